@@ -1,0 +1,52 @@
+#pragma once
+/// \file
+/// The isosurface of a field.
+
+#include "hyperiso/field.hpp"
+#include "hyperiso/mesh.hpp"
+
+#include <functional>
+
+namespace hyperiso {
+
+/// Which samples are `+`: the side that the surface's table keeps together where a cell is ambiguous
+/// (paper 000 section 2.1), and from which normals point away.
+enum class Inside {
+  above, ///< value >= isovalue
+  below, ///< value <= isovalue
+};
+
+enum class Precision { f32, f64 };
+
+/// Called now and then, from one thread, with the share done in [0, 1]; returns false to cancel.
+using Progress = std::function<bool(double)>;
+
+struct ExtractOptions {
+  Inside inside = Inside::above;
+  Precision precision = Precision::f32;    ///< of the positions; they are computed in double in any case
+  bool keep_edges = true;                  ///< fill Mesh::edges and Mesh::grid_axes (8 bytes per vertex)
+  std::uint64_t memory_limit = UINT64_MAX; ///< bytes the call may allocate
+  Progress progress;
+};
+
+/// Builds the isosurface of `field` as a welded, oriented mesh of (D-1)-simplices, by the hull table
+/// (paper 000 section 2).
+///
+/// A sample is inside (`+`) iff `value >= isovalue` (or <=, see Inside), compared exactly. Every grid edge
+/// between a `+` and a `-` sample that belongs to a cell without NaN carries one vertex, at
+/// t = (isovalue - a) / (b - a) from its lower end; where one end is infinite it lies on the other, where
+/// both are, in the middle. Vertices ascend by the number of their grid edge, simplices by their cell.
+///
+/// Guarantees: every (D-2)-face lies in one or two simplices, in two with opposite orientation; in one only
+/// on the boundary of the grid or of the data (NaN). det[n; v1-v0; ...] > 0 for the normal n from `+` to `-`,
+/// whatever the direction of the axes. A sample equal to the isovalue may put several vertices on one point:
+/// nothing is merged by distance. A grid with fewer than two samples along an axis has no cell and no
+/// surface.
+///
+/// Coordinates are those of the field's axes. Types: all of SampleType; D = 2, 3, 4.
+/// Errors: invalid_isovalue if it is not finite; out_of_memory; cancelled.
+template <class T, int D>
+Result<SimplexMesh<D>> extract(const FieldView<const T, D>& field, double isovalue,
+                               const ExtractOptions& options = {});
+
+} // namespace hyperiso

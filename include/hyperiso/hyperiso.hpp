@@ -1,0 +1,13 @@
+#pragma once
+/// \file
+/// All of hyperiso. The headers are the manual; start with extract.hpp.
+
+#include "hyperiso/extract.hpp"
+#include "hyperiso/field.hpp"
+#include "hyperiso/grid.hpp"
+#include "hyperiso/io.hpp"
+#include "hyperiso/measure.hpp"
+#include "hyperiso/mesh.hpp"
+#include "hyperiso/result.hpp"
+#include "hyperiso/slice.hpp"
+#include "hyperiso/table.hpp"

@@ -1,0 +1,65 @@
+#include "hyperiso/number_array.hpp"
+
+#include <cstring>
+#include <sys/mman.h>
+
+namespace hyperiso {
+namespace {
+
+constexpr std::size_t page = 4096;
+constexpr std::size_t huge_page = std::size_t{2} << 20;
+
+// Large blocks come from mmap, aligned to huge pages and advised to use them; small ones from operator new.
+bool is_mapped(std::size_t capacity) { return capacity >= 2 * huge_page; }
+
+std::size_t rounded_up(std::size_t bytes, std::size_t unit) {
+  if (bytes > SIZE_MAX - unit) throw std::bad_alloc();
+  return (bytes + unit - 1) / unit * unit;
+}
+
+void* map(std::size_t capacity) {
+  const std::size_t length = rounded_up(capacity, 1) + huge_page;
+  void* mapped = mmap(nullptr, length, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (mapped == MAP_FAILED) throw std::bad_alloc();
+  const auto start = reinterpret_cast<std::uintptr_t>(mapped);
+  const auto aligned = (start + huge_page - 1) / huge_page * huge_page;
+  if (aligned > start) munmap(mapped, aligned - start);
+  munmap(reinterpret_cast<void*>(aligned + capacity), start + length - (aligned + capacity));
+  void* data = reinterpret_cast<void*>(aligned);
+#ifdef MADV_HUGEPAGE
+  madvise(data, capacity, MADV_HUGEPAGE); // a hint: without it the buffer is merely slower to fill
+#endif
+  return data;
+}
+
+void release(void* data, std::size_t capacity) {
+  if (is_mapped(capacity))
+    munmap(data, capacity);
+  else
+    ::operator delete (data, std::align_val_t{64});
+}
+
+} // namespace
+
+Buffer::Buffer(const Buffer& other) {
+  reset(other.size_);
+  if (size_ > 0) std::memcpy(data_, other.data_, size_);
+}
+
+Buffer::~Buffer() {
+  if (data_) release(data_, capacity_);
+}
+
+void Buffer::reset(std::size_t bytes) {
+  if (bytes > capacity_) {
+    if (data_) release(data_, capacity_);
+    data_ = nullptr;
+    size_ = capacity_ = 0;
+    const std::size_t capacity = is_mapped(bytes) ? rounded_up(bytes, page) : bytes;
+    data_ = is_mapped(capacity) ? map(capacity) : ::operator new (capacity, std::align_val_t{64});
+    capacity_ = capacity;
+  }
+  size_ = bytes;
+}
+
+} // namespace hyperiso
