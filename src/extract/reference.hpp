@@ -46,7 +46,7 @@ std::vector<GridEdge> reference_corners(const FieldView<const T, D>& field, Sign
   const auto dims = field.dims();
   std::vector<GridEdge> corners;
   for_each_cell<D>(dims, [&](const std::array<std::int64_t, D>& cell) {
-    const auto labels = cell_labels(field, cell, rule);
+    const auto labels = cell_labels<T, D, Above>(field, cell, rule);
     if (!labels) return;
     for (const std::uint8_t edge : table.simplices(*labels)) {
       const CubeEdge ends = cube_edge_ends<D>(edge);
