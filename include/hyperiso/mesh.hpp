@@ -40,6 +40,8 @@ struct Mesh {
   std::vector<GridEdge> edges;
   std::vector<Axis> grid_axes;
 
+  std::uint64_t active_cells = 0; ///< grid cells that the simplices came from; 0 if not known
+
   std::vector<Attribute> attributes;
 
   std::size_t vertex_count() const { return positions.size() / static_cast<std::size_t>(dimension); }

@@ -39,15 +39,17 @@ void for_each_cell(const std::array<std::int64_t, D>& dims, Use&& use) {
   }
 }
 
-// The grid edges of the simplices' corners, D for each simplex, cell by cell.
+// The grid edges of the simplices' corners, D for each simplex, cell by cell; counts the active cells.
 template <class T, int D, bool Above>
-std::vector<GridEdge> reference_corners(const FieldView<const T, D>& field, SignRule<T, Above> rule) {
+std::vector<GridEdge> reference_corners(const FieldView<const T, D>& field, SignRule<T, Above> rule,
+                                        std::uint64_t& active_cells) {
   const HullTable<D>& table = hull_table<D>();
   const auto dims = field.dims();
   std::vector<GridEdge> corners;
   for_each_cell<D>(dims, [&](const std::array<std::int64_t, D>& cell) {
     const auto labels = cell_labels<T, D, Above>(field, cell, rule);
     if (!labels) return;
+    if (table.simplex_count(*labels) > 0) ++active_cells;
     for (const std::uint8_t edge : table.simplices(*labels)) {
       const CubeEdge ends = cube_edge_ends<D>(edge);
       std::array<std::int64_t, D> upper = cell;
@@ -76,9 +78,11 @@ std::array<double, D> reference_position(const FieldView<const T, D>& field, Gri
 template <class T, int D>
 SimplexMesh<D> extract_reference(const FieldView<const T, D>& field, double isovalue,
                                  const ExtractOptions& options = {}) {
-  std::vector<GridEdge> corners = options.inside == Inside::above
-                                      ? reference_corners(field, SignRule<T, true>(isovalue))
-                                      : reference_corners(field, SignRule<T, false>(isovalue));
+  SimplexMesh<D> mesh;
+  std::vector<GridEdge> corners =
+      options.inside == Inside::above
+          ? reference_corners(field, SignRule<T, true>(isovalue), mesh.active_cells)
+          : reference_corners(field, SignRule<T, false>(isovalue), mesh.active_cells);
   const auto reversed_axes =
       std::ranges::count_if(field.grid.axes, [](const Axis& a) { return !a.increasing(); });
   if (reversed_axes % 2 == 1)
@@ -89,7 +93,6 @@ SimplexMesh<D> extract_reference(const FieldView<const T, D>& field, double isov
   std::ranges::sort(edges);
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
 
-  SimplexMesh<D> mesh;
   mesh.positions.reset(edges.size() * D, options.precision == Precision::f64);
   for (std::size_t vertex = 0; vertex < edges.size(); ++vertex) {
     const auto position = reference_position(field, edges[vertex], isovalue);
