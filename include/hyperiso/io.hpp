@@ -84,4 +84,8 @@ struct SeriesEntry {
 /// Writes a ParaView .pvd that names the files and their times.
 Status write_series(const std::vector<SeriesEntry>& entries, const std::filesystem::path& path);
 
+/// Removes the temporary files of writes under way in this process. For a program's handler of the signals
+/// that end it (async-signal-safe); the writes themselves fail if they go on.
+void remove_unfinished_files() noexcept;
+
 } // namespace hyperiso

@@ -1,0 +1,67 @@
+#pragma once
+// Files that appear whole or not at all.
+
+#include "hyperiso/result.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+namespace hyperiso {
+
+struct UnfinishedFile;
+
+// Writes beside the target under the name .hyperiso-PROCESS-NUMBER.part and renames at `commit`; until then,
+// and after any failure, what was at the target stays as it was. The temporary file is removed by the
+// destructor, or by `remove_unfinished_files` (hyperiso/io.hpp) when a signal ends the program. A temporary
+// name beside the target works on every file system; O_TMPFILE does not, and needs a name all the same to
+// replace an existing file.
+//
+// A new file gets the permissions the umask allows, a replaced one keeps its own; a symbolic link stays, the
+// file it leads to is replaced. Pipes, devices and open descriptors (/dev/stdout, /dev/fd/N) have nothing to
+// rename: they are written as they are.
+class AtomicFile {
+ public:
+  // Error: file_unwritable, naming the target and the system's reason.
+  static Result<AtomicFile> create(const std::filesystem::path& target);
+  AtomicFile(AtomicFile&& other) noexcept;
+  AtomicFile& operator=(AtomicFile&&) = delete;
+  ~AtomicFile();
+
+  // Buffered. A failure is kept and reported by `commit`; writing on after it does nothing.
+  void write(const void* data, std::size_t bytes);
+  void write(std::string_view characters) { write(characters.data(), characters.size()); }
+  bool failed() const { return error_number_ != 0; }
+
+  // Leaves room for `bytes` that are known later; `fill` writes them there. One gap at a time. In a file that
+  // cannot seek, what follows the gap stays in memory until it is filled.
+  void leave_gap(std::size_t bytes);
+  void fill_gap(std::string_view bytes);
+
+  // Flushes to the device, closes and renames. Error: file_unwritable. Call once, last.
+  Status commit();
+
+ private:
+  explicit AtomicFile(std::filesystem::path target);
+  void open_temporary();
+  void open_in_place();
+  void flush();
+  void write_through(const char* data, std::size_t bytes);
+  void close_and_sync();
+  Error error() const;
+
+  std::filesystem::path target_;    // as the caller named it, for messages
+  std::filesystem::path replaces_;  // what the rename replaces; empty when written in place
+  std::filesystem::path temporary_; // empty when written in place
+  UnfinishedFile* unfinished_ = nullptr;
+  int descriptor_ = -1;
+  int error_number_ = 0;
+  std::vector<char> buffer_;
+  bool has_gap_ = false;
+  std::size_t gap_in_buffer_ = 0; // in place
+  std::uint64_t gap_in_file_ = 0; // in a temporary file
+  std::uint64_t flushed_ = 0;     // bytes
+};
+
+} // namespace hyperiso

@@ -1,0 +1,110 @@
+#include "io/encoding.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <new>
+#include <zlib.h>
+
+namespace hyperiso {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the arrays are written as they lie in memory");
+
+constexpr std::size_t block_bytes = std::size_t{1} << 18;
+
+// Level 1: on coordinates and connectivity the higher levels take several times as long for a few percent.
+constexpr int compression_level = 1;
+
+constexpr char base64_digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+void put_three(const unsigned char* bytes, char* digits) {
+  digits[0] = base64_digits[bytes[0] >> 2];
+  digits[1] = base64_digits[(bytes[0] & 3) << 4 | bytes[1] >> 4];
+  digits[2] = base64_digits[(bytes[1] & 15) << 2 | bytes[2] >> 6];
+  digits[3] = base64_digits[bytes[2] & 63];
+}
+
+std::string base64_of(const std::vector<std::uint64_t>& numbers) {
+  std::string text;
+  Base64Encoder encoder;
+  encoder.append({reinterpret_cast<const unsigned char*>(numbers.data()), numbers.size() * 8}, text);
+  encoder.finish(text);
+  return text;
+}
+
+} // namespace
+
+void Base64Encoder::append(std::span<const unsigned char> bytes, std::string& text) {
+  while (pending_count_ > 0 && pending_count_ < 3 && !bytes.empty()) {
+    pending_[pending_count_++] = bytes.front();
+    bytes = bytes.subspan(1);
+  }
+  std::size_t end = text.size();
+  text.resize(end + bytes.size() / 3 * 4 + 4);
+  if (pending_count_ == 3) {
+    put_three(pending_, text.data() + end);
+    pending_count_ = 0;
+    end += 4;
+  }
+  for (; bytes.size() >= 3; bytes = bytes.subspan(3), end += 4) put_three(bytes.data(), text.data() + end);
+  text.resize(end);
+  for (const unsigned char byte : bytes) pending_[pending_count_++] = byte;
+}
+
+void Base64Encoder::finish(std::string& text) {
+  if (pending_count_ == 0) return;
+  std::fill(pending_ + pending_count_, pending_ + 3, static_cast<unsigned char>(0));
+  char digits[4];
+  put_three(pending_, digits);
+  std::fill(digits + pending_count_ + 1, digits + 4, '=');
+  text.append(digits, 4);
+  pending_count_ = 0;
+}
+
+CompressedArrayWriter::CompressedArrayWriter(AtomicFile& file, std::uint64_t bytes) : file_(file) {
+  const std::uint64_t blocks = (bytes + block_bytes - 1) / block_bytes;
+  header_ = {blocks, block_bytes, bytes % block_bytes};
+  header_.reserve(3 + blocks);
+  file_.leave_gap(((3 + blocks) * 8 + 2) / 3 * 4);
+}
+
+void CompressedArrayWriter::append(const void* data, std::size_t bytes) {
+  const auto* next = static_cast<const unsigned char*>(data);
+  while (bytes > 0) {
+    const std::size_t part = std::min(bytes, block_bytes - block_.size());
+    if (part == block_bytes) {
+      compress_block(next, part);
+    } else {
+      block_.insert(block_.end(), next, next + part);
+      if (block_.size() == block_bytes) {
+        compress_block(block_.data(), block_.size());
+        block_.clear();
+      }
+    }
+    next += part;
+    bytes -= part;
+  }
+}
+
+void CompressedArrayWriter::compress_block(const unsigned char* block, std::size_t bytes) {
+  if (file_.failed()) return;
+  uLongf size = compressBound(bytes);
+  compressed_.resize(size);
+  if (compress2(compressed_.data(), &size, block, bytes, compression_level) != Z_OK) throw std::bad_alloc();
+  header_.push_back(size);
+  text_.clear();
+  encoder_.append({compressed_.data(), size}, text_);
+  file_.write(text_);
+}
+
+void CompressedArrayWriter::finish() {
+  if (!block_.empty()) compress_block(block_.data(), block_.size());
+  text_.clear();
+  encoder_.finish(text_);
+  file_.write(text_);
+  assert(file_.failed() || header_.size() == 3 + header_[0]);
+  file_.fill_gap(base64_of(header_));
+}
+
+} // namespace hyperiso
