@@ -9,22 +9,24 @@
 
 namespace hyperiso {
 
-/// See docs of each member; K is the dimension of the simplices, D that of the space.
+/// What `measure` found; K is the dimension of the simplices, D that of the space.
 struct Measure {
   std::uint64_t components = 0; ///< connected through shared vertices
   std::int64_t euler_characteristic =
-      0;                             ///< vertices - edges + triangles - ..., over all faces of all simplices
+      0;                             ///< vertices - edges + triangles - ..., over the faces of all simplices
   std::uint64_t boundary_facets = 0; ///< (K-1)-faces of exactly one simplex
   std::uint64_t bad_facets = 0; ///< (K-1)-faces of three or more, or of two that orient it alike; must be 0
   bool closed = false;          ///< no boundary facets
-  double content = 0;           ///< total K-volume; for K = D signed: positive if all are oriented positively
-  std::vector<double> vector_area; ///< K = D-1: sum of content times unit normal, D numbers; else empty
+  double content = 0;           ///< total K-volume, unsigned
+  std::vector<double> vector_area;      ///< K = D-1: sum of content times unit normal, D numbers; else empty
+  std::uint64_t inverted_simplices = 0; ///< K = D: of negative orientation
   std::uint64_t zero_content_simplices = 0; ///< whose computed content is exactly 0
 };
 
-/// Measures a mesh of any dimension 2 <= D <= 8. Sums run in the order of the simplices: the same mesh gives
-/// the same bits. Cost: sorts the faces around each vertex; memory about 12 bytes per simplex and vertex of
-/// it. Error: out_of_memory; invalid_argument if an index is out of range.
+/// Measures a mesh of (D-1)- or D-simplices in R^D, 2 <= D <= 8. Sums run in the order of the simplices: the
+/// same mesh gives the same bits. Vertices that no simplex uses do not count. Cost: sorts the faces around
+/// each vertex; 8 bytes of memory per corner of a simplex and 16 per vertex. Errors: out_of_memory;
+/// invalid_argument for other dimensions or an index out of range.
 Result<Measure> measure(const Mesh& mesh);
 
 } // namespace hyperiso
