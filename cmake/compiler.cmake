@@ -5,7 +5,13 @@ target_compile_options(hyperiso_compiler INTERFACE
   # A fused multiply-add rounds differently: the same input must give the same bytes on every path.
   -ffp-contract=off)
 
-option(HYPERISO_WERROR "Treat warnings as errors" OFF)
+# On for the compiler that every change is checked with. Another may warn of things nobody has seen yet, and
+# that must not stop a user's build.
+set(werror OFF)
+if(PROJECT_IS_TOP_LEVEL AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION MATCHES "^12\\.")
+  set(werror ON)
+endif()
+option(HYPERISO_WERROR "Treat warnings as errors" ${werror})
 if(HYPERISO_WERROR)
   target_compile_options(hyperiso_compiler INTERFACE -Werror)
 endif()
@@ -16,7 +22,9 @@ if(HYPERISO_SANITIZE)
   add_link_options(-fsanitize=${HYPERISO_SANITIZE})
 endif()
 
-find_program(CCACHE ccache)
-if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+if(PROJECT_IS_TOP_LEVEL)
+  find_program(CCACHE ccache)
+  if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+  endif()
 endif()
