@@ -1,0 +1,26 @@
+# The commands for somebody who has just cloned hyperiso. On Debian and Ubuntu each installs the packages it
+# lacks (tools/install_dependencies); README.md lists them for other systems. Developers may as well use the
+# cmake presets directly: see CONTRIBUTING.md.
+
+processors := $(shell getconf _NPROCESSORS_ONLN)
+
+.PHONY: help build test clean
+
+help:
+	@echo "make build   the optimised program: build/release/bin/hyperiso"
+	@echo "make test    builds everything and runs the tests"
+	@echo "make clean   removes what the others made"
+
+build:
+	@tools/install_dependencies build
+	cmake --preset release -D HYPERISO_BUILD_TESTS=OFF
+	cmake --build --preset release
+
+test:
+	@tools/install_dependencies build test
+	cmake --preset release
+	cmake --build --preset release
+	ctest --preset release --parallel $(processors)
+
+clean:
+	rm -rf build demo
