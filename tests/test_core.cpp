@@ -1,4 +1,5 @@
 #include "core/sign.hpp"
+#include "core/text.hpp"
 #include "hyperiso/field.hpp"
 
 #include <cmath>
@@ -76,4 +77,22 @@ TEST(Field, sizes_that_overflow_are_an_error) {
   const auto field = allocate_field(info);
   ASSERT_FALSE(field);
   EXPECT_EQ(field.error().code, Code::invalid_argument);
+}
+
+TEST(Field, memory_limit_is_kept_and_named) {
+  FieldInfo info;
+  info.axes.resize(2);
+  for (Axis& axis : info.axes) axis.count = 32;
+  EXPECT_TRUE(allocate_field(info, 4096));
+  const auto field = allocate_field(info, 2000);
+  ASSERT_FALSE(field);
+  EXPECT_EQ(field.error().code, Code::out_of_memory);
+  EXPECT_EQ(field.error().message, "the field takes 4 KiB, the memory limit is 2 KiB");
+}
+
+TEST(Text, numbers_read_back_and_sizes_are_for_people) {
+  EXPECT_EQ(text("at ", 0.1, " of ", 3, ' ', 0.25f), "at 0.1 of 3 0.25");
+  EXPECT_EQ(byte_size(1023), "1023 B");
+  EXPECT_EQ(byte_size(1153434), "1.1 MiB");
+  EXPECT_EQ(byte_size(UINT64_MAX), "16 EiB");
 }

@@ -168,11 +168,12 @@ struct Field {
 };
 
 /// A field with memory of its own, to be filled through the returned pointer, axis 0 fastest.
-/// Error: out_of_memory; invalid_argument if the number of bytes overflows.
+/// Error: out_of_memory, also where its samples take more than `memory_limit` bytes; invalid_argument if
+/// their number overflows.
 struct NewField {
   Field field;
   std::byte* samples;
 };
-Result<NewField> allocate_field(FieldInfo info);
+Result<NewField> allocate_field(FieldInfo info, std::uint64_t memory_limit = UINT64_MAX);
 
 } // namespace hyperiso

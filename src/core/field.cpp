@@ -58,7 +58,7 @@ Field Field::cropped(int axis, std::int64_t begin, std::int64_t end) const {
   return field;
 }
 
-Result<NewField> allocate_field(FieldInfo info) {
+Result<NewField> allocate_field(FieldInfo info, std::uint64_t memory_limit) {
   std::uint64_t bytes = size_of(info.type);
   std::vector<std::int64_t> strides;
   std::int64_t stride = 1;
@@ -70,9 +70,12 @@ Result<NewField> allocate_field(FieldInfo info) {
     strides.push_back(stride);
     stride *= axis.count;
   }
+  if (bytes > memory_limit)
+    return Error{Code::out_of_memory, text("the field takes ", byte_size(bytes), ", the memory limit is ",
+                                           byte_size(memory_limit))};
   auto* samples = static_cast<std::byte*>(
       ::operator new (std::max<std::uint64_t>(bytes, 1), std::align_val_t{64}, std::nothrow));
-  if (!samples) return Error{Code::out_of_memory, text("no memory for a field of ", bytes, " bytes")};
+  if (!samples) return Error{Code::out_of_memory, text("no memory for a field of ", byte_size(bytes))};
   std::shared_ptr<const std::byte> owner(samples, [](const std::byte* p) {
     ::operator delete (const_cast<std::byte*>(p), std::align_val_t{64});
   });
