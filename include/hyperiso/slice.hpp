@@ -5,6 +5,7 @@
 #include "hyperiso/extract.hpp"
 
 #include <array>
+#include <cstdint>
 
 namespace hyperiso {
 
@@ -22,5 +23,48 @@ struct Hyperplane {
     return plane;
   }
 };
+
+struct SliceOptions {
+  Precision precision = Precision::f32; ///< of the positions; they are computed in double in any case
+};
+
+/// Cuts a surface of (D-1)-simplices in R^D by a hyperplane into a welded, oriented mesh of (D-2)-simplices.
+///
+/// Coordinates: for a plane across one axis, those of the other axes in their order; for an oblique plane,
+/// those along an orthonormal basis of it: the axes without the one most aligned with the normal, made
+/// orthonormal in their order. Normals point from + to -, as in `mesh`.
+///
+/// A cut vertex lies on one edge of the mesh; a vertex exactly on the plane counts as beyond it (normal . x
+/// >= offset). So a plane through vertices or along whole simplices needs no special treatment: the cut stays
+/// a manifold wherever the mesh is one; it may hold simplices without content.
+/// A plane that holds samples (across an axis, at a coordinate of `mesh.grid_axes`) gives the trace of the
+/// mesh there instead: the mesh that `extract` makes of these samples alone, vertex for vertex and simplex
+/// for simplex, with its own grid edges, wherever a cell without NaN touches them. That needs `mesh.edges`;
+/// without them such a plane is cut like any other.
+///
+/// D = 3, 4. The cut depends on the order of the vertices, not of the simplices, and comes out the same for a
+/// mesh and for any slab of it that holds the plane. A plane that misses the mesh gives an empty mesh. Cost:
+/// one pass over the mesh and a sort of the cut. Errors: invalid_argument if the normal is 0 or not finite;
+/// out_of_memory.
+template <int D>
+Result<SimplexMesh<D - 1>> slice(const SimplexMesh<D>& mesh, const Hyperplane<D>& plane,
+                                 const SliceOptions& options = {});
+
+/// The same cut straight from the field, without the D-mesh: of the samples around the plane only, if it lies
+/// across an axis. At a coordinate that holds samples it is the extraction of these samples, also where NaN
+/// surrounds them. Types: all of SampleType; D = 3, 4.
+/// Errors: those of `extract` and of the other `slice`; outside_domain if a plane across an axis misses the
+/// field.
+template <class T, int D>
+Result<SimplexMesh<D - 1>> slice(const FieldView<const T, D>& field, double isovalue,
+                                 const Hyperplane<D>& plane, const ExtractOptions& options = {});
+
+struct SampleRange {
+  std::int64_t begin, end;
+};
+
+/// The samples of an axis that a plane at `value` needs: one if it holds samples, else the two around it.
+/// Error: outside_domain if `value` is not between the first and the last coordinate; names axis and range.
+Result<SampleRange> samples_around(const Axis& axis, double value);
 
 } // namespace hyperiso

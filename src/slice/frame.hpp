@@ -1,0 +1,71 @@
+#pragma once
+// Coordinates on a hyperplane.
+
+#include "core/determinant.hpp"
+#include "hyperiso/slice.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hyperiso {
+
+// The axis that the plane lies across, if its normal runs along one.
+template <int D>
+std::optional<int> axis_across(const Hyperplane<D>& plane) {
+  std::optional<int> across;
+  for (int axis = 0; axis < D; ++axis) {
+    if (plane.normal[axis] == 0) continue;
+    if (across) return std::nullopt;
+    across = axis;
+  }
+  return across;
+}
+
+// An orthonormal basis of the plane, and whether the unit normal followed by it is positively oriented.
+template <int D>
+struct Frame {
+  std::array<std::array<double, D>, D - 1> basis{};
+  bool positive = true;
+
+  explicit Frame(const Hyperplane<D>& plane) {
+    const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
+    const auto across = std::ranges::max_element(plane.normal, larger) - plane.normal.begin();
+    const std::array<double, D> normal = unit(plane.normal);
+    std::vector<double> rows(normal.begin(), normal.end());
+    for (int axis = 0, row = 0; axis < D; ++axis) {
+      if (axis == across) continue;
+      std::array<double, D> direction{};
+      direction[axis] = 1;
+      remove(direction, normal);
+      for (int done = 0; done < row; ++done) remove(direction, basis[done]);
+      basis[row] = unit(direction);
+      rows.insert(rows.end(), basis[row].begin(), basis[row].end());
+      ++row;
+    }
+    positive = determinant(rows, D) > 0;
+  }
+
+  std::array<double, D - 1> coordinates(const std::array<double, D>& point) const {
+    std::array<double, D - 1> result{};
+    for (int row = 0; row < D - 1; ++row)
+      for (int k = 0; k < D; ++k) result[row] += basis[row][k] * point[k];
+    return result;
+  }
+
+ private:
+  static std::array<double, D> unit(std::array<double, D> vector) {
+    const double largest = std::abs(*std::ranges::max_element(
+        vector, [](double a, double b) { return std::abs(a) < std::abs(b); })); // keeps squares in range
+    double squared = 0;
+    for (double& component : vector) component /= largest, squared += component * component;
+    for (double& component : vector) component /= std::sqrt(squared);
+    return vector;
+  }
+  static void remove(std::array<double, D>& vector, const std::array<double, D>& direction) {
+    double along = 0;
+    for (int k = 0; k < D; ++k) along += vector[k] * direction[k];
+    for (int k = 0; k < D; ++k) vector[k] -= along * direction[k];
+  }
+};
+
+} // namespace hyperiso
