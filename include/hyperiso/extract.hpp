@@ -4,8 +4,7 @@
 
 #include "hyperiso/field.hpp"
 #include "hyperiso/mesh.hpp"
-
-#include <functional>
+#include "hyperiso/progress.hpp"
 
 namespace hyperiso {
 
@@ -17,9 +16,6 @@ enum class Inside {
 };
 
 enum class Precision { f32, f64 };
-
-/// Called now and then, from one thread, with the share done in [0, 1]; returns false to cancel.
-using Progress = std::function<bool(double)>;
 
 struct ExtractOptions {
   Inside inside = Inside::above;
