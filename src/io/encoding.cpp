@@ -1,6 +1,7 @@
 #include "io/encoding.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cassert>
 #include <new>
@@ -17,6 +18,20 @@ constexpr std::size_t block_bytes = std::size_t{1} << 18;
 constexpr int compression_level = 1;
 
 constexpr char base64_digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
+enum : unsigned char { blank = 64, padding, invalid };
+
+// Value of each character.
+constexpr auto base64_values = [] {
+  std::array<unsigned char, 256> values{};
+  values.fill(invalid);
+  for (const char c : {' ', '\t', '\r', '\n'}) values[static_cast<unsigned char>(c)] = blank;
+  values['='] = padding;
+  for (unsigned char i = 0; i < 64; ++i) values[static_cast<unsigned char>(base64_digits[i])] = i;
+  return values;
+}();
+
+unsigned value_of(char digit) { return base64_values[static_cast<unsigned char>(digit)]; }
 
 void put_three(const unsigned char* bytes, char* digits) {
   digits[0] = base64_digits[bytes[0] >> 2];
@@ -60,6 +75,45 @@ void Base64Encoder::finish(std::string& text) {
   std::fill(digits + pending_count_ + 1, digits + 4, '=');
   text.append(digits, 4);
   pending_count_ = 0;
+}
+
+// The next four digits, blanks left out, into decoded_.
+bool Base64Decoder::decode_group(std::string_view& text) {
+  unsigned values[4];
+  int count = 0;
+  while (count < 4 && !text.empty()) {
+    const unsigned value = value_of(text.front());
+    text.remove_prefix(1);
+    if (value != blank) values[count++] = value;
+  }
+  if (count < 4 || values[0] >= 64 || values[1] >= 64) return false;
+  if (values[2] > padding || values[3] > padding || (values[2] == padding && values[3] != padding))
+    return false;
+  begin_ = 0;
+  end_ = values[2] == padding ? 1 : values[3] == padding ? 2 : 3;
+  const unsigned bits = values[0] << 18 | values[1] << 12 | (values[2] & 63) << 6 | (values[3] & 63);
+  for (std::size_t i = 0; i < 3; ++i) decoded_[i] = static_cast<unsigned char>(bits >> (16 - 8 * i));
+  return true;
+}
+
+std::size_t Base64Decoder::decode(std::string_view& text, unsigned char* destination, std::size_t bytes) {
+  std::size_t done = 0;
+  while (done < bytes) {
+    if (begin_ < end_) {
+      destination[done++] = decoded_[begin_++];
+      continue;
+    }
+    for (; bytes - done >= 3 && text.size() >= 4; text.remove_prefix(4), done += 3) { // plain digits only
+      const unsigned a = value_of(text[0]), b = value_of(text[1]), c = value_of(text[2]),
+                     d = value_of(text[3]);
+      if ((a | b | c | d) >= 64) break;
+      destination[done] = static_cast<unsigned char>(a << 2 | b >> 4);
+      destination[done + 1] = static_cast<unsigned char>(b << 4 | c >> 2);
+      destination[done + 2] = static_cast<unsigned char>(c << 6 | d);
+    }
+    if (done < bytes && !decode_group(text)) break;
+  }
+  return done;
 }
 
 CompressedArrayWriter::CompressedArrayWriter(AtomicFile& file, std::uint64_t bytes) : file_(file) {

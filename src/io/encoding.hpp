@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace hyperiso {
@@ -22,6 +23,20 @@ class Base64Encoder {
  private:
   unsigned char pending_[3]{};
   std::size_t pending_count_ = 0;
+};
+
+// Bytes of base64 text, blanks between its digits allowed. A padded text may be followed by another.
+class Base64Decoder {
+ public:
+  // Takes from the front of `text` what the next `bytes` bytes need and returns how many it decoded: fewer
+  // if the text ends or holds something else.
+  std::size_t decode(std::string_view& text, unsigned char* destination, std::size_t bytes);
+
+ private:
+  bool decode_group(std::string_view& text);
+
+  unsigned char decoded_[3]{};
+  std::size_t begin_ = 0, end_ = 0; // of what is decoded and not yet taken
 };
 
 // The content of one <DataArray format="binary"> of a file with compressor="vtkZLibDataCompressor" and
