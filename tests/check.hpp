@@ -9,6 +9,7 @@
 #include <functional>
 #include <gtest/gtest.h>
 #include <map>
+#include <numeric>
 #include <random>
 #include <set>
 #include <vector>
@@ -123,32 +124,57 @@ inline double enclosed_volume(const Mesh& mesh) {
   return volume;
 }
 
+// Calls use(index) for every sample, in memory order.
+template <int D, class Use>
+void for_each_index(const std::array<std::int64_t, D>& dims, Use&& use) {
+  if (std::ranges::find(dims, 0) != dims.end()) return;
+  std::array<std::int64_t, D> index{};
+  for (int axis = 0; axis < D;) {
+    use(index);
+    for (axis = 0; axis < D && ++index[axis] == dims[axis]; ++axis) index[axis] = 0;
+  }
+}
+
+// The vertices of each facet that belongs to one simplex only.
+inline std::vector<std::vector<std::uint64_t>> boundary_facets(const Mesh& mesh) {
+  const auto corners = static_cast<std::size_t>(mesh.simplex_dimension + 1);
+  std::map<std::vector<std::uint64_t>, int> uses;
+  for (std::size_t simplex = 0; simplex < mesh.simplex_count(); ++simplex)
+    for (std::size_t left_out = 0; left_out < corners; ++left_out) {
+      std::vector<std::uint64_t> facet;
+      for (std::size_t corner = 0; corner < corners; ++corner)
+        if (corner != left_out) facet.push_back(mesh.simplices[simplex * corners + corner]);
+      std::ranges::sort(facet);
+      ++uses[facet];
+    }
+  std::vector<std::vector<std::uint64_t>> boundary;
+  for (const auto& [facet, count] : uses)
+    if (count == 1) boundary.push_back(facet);
+  return boundary;
+}
+
 // Counts the crossed edges of the cells without NaN, independently of any table.
 template <class T, int D>
 std::size_t crossed_edges(const FieldView<const T, D>& field, const std::function<bool(T)>& inside) {
   const auto dims = field.dims();
   std::set<std::pair<std::array<std::int64_t, D>, int>> crossed;
-  std::array<std::int64_t, D> cell{};
-  for (const auto count : dims)
-    if (count < 2) return 0;
-  for (;;) {
+  for_each_index<D>(dims, [&](const std::array<std::int64_t, D>& cell) {
+    for (int axis = 0; axis < D; ++axis)
+      if (cell[axis] == dims[axis] - 1) return;
     const auto sample = [&](unsigned vertex) {
       auto index = cell;
       for (int axis = 0; axis < D; ++axis) index[axis] += vertex >> axis & 1;
       return index;
     };
-    bool missing = false;
     for (unsigned vertex = 0; vertex < 1u << D; ++vertex)
-      missing |= field.at(sample(vertex)) != field.at(sample(vertex));
-    for (unsigned vertex = 0; vertex < 1u << D && !missing; ++vertex)
+      if (field.at(sample(vertex)) != field.at(sample(vertex))) return; // NaN
+    for (unsigned vertex = 0; vertex < 1u << D; ++vertex)
       for (int axis = 0; axis < D; ++axis)
         if (!(vertex >> axis & 1) &&
             inside(field.at(sample(vertex))) != inside(field.at(sample(vertex | 1u << axis))))
           crossed.insert({sample(vertex), axis});
-    int axis = 0;
-    while (axis < D && ++cell[axis] == dims[axis] - 1) cell[axis++] = 0;
-    if (axis == D) return crossed.size();
-  }
+  });
+  return crossed.size();
 }
 
 } // namespace hyperiso::check

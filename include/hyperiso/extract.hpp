@@ -22,7 +22,7 @@ struct ExtractOptions {
   Precision precision = Precision::f32;    ///< of the positions; they are computed in double in any case
   bool keep_edges = true;                  ///< fill Mesh::edges and Mesh::grid_axes (8 bytes per vertex)
   std::uint64_t memory_limit = UINT64_MAX; ///< bytes the call may allocate
-  Progress progress;
+  Progress progress = {};
 };
 
 /// Builds the isosurface of `field` as a welded, oriented mesh of (D-1)-simplices, by the hull table

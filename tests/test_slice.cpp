@@ -1,0 +1,249 @@
+// Slices of random and of known surfaces: sound on every plane, and the field's own surface at a stored step.
+
+#include "check.hpp"
+#include "hyperiso/slice.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+using namespace hyperiso;
+using namespace hyperiso::check;
+
+namespace {
+
+template <class T, int D>
+SimplexMesh<D> extracted(const OwnedField<T, D>& field, double isovalue, const ExtractOptions& options = {}) {
+  auto mesh = extract(field.view, isovalue, options);
+  EXPECT_TRUE(mesh) << mesh.error().message;
+  return *std::move(mesh);
+}
+
+template <int D>
+SimplexMesh<D - 1> sliced(const SimplexMesh<D>& mesh, const Hyperplane<D>& plane,
+                          const SliceOptions& options = {}) {
+  auto cut = slice(mesh, plane, options);
+  EXPECT_TRUE(cut) << cut.error().message;
+  return *std::move(cut);
+}
+
+// A ball of radius 1.1 that moves along x; its surface in R^4 is a tube, open at the first and last step.
+OwnedField<double, 4> moving_ball() {
+  Grid<4> grid = box_grid<4>(25, -1.7, 1.7);
+  grid.axes[3] = Axis{.count = 5, .origin = 2, .spacing = 0.25};
+  return make_field<double, 4>(grid, [](const auto& p) {
+    const double x = p[0] - 0.4 * (p[3] - 2.5);
+    return 1.1 - std::sqrt(x * x + p[1] * p[1] + p[2] * p[2]);
+  });
+}
+
+// Random with a constant layer on the walls of all axes but the last: open at the first and the last step
+// only.
+OwnedField<float, 4> random_island(unsigned seed, int range) {
+  const std::array<std::int64_t, 4> dims{6, 5, 5, 4};
+  auto field = random_field<float, 4>(dims, range, seed);
+  std::size_t sample = 0;
+  for_each_index<4>(dims, [&](const auto& index) {
+    for (int axis = 0; axis < 3; ++axis)
+      if (index[axis] == 0 || index[axis] == dims[axis] - 1)
+        field.samples[sample] = static_cast<float>(-range);
+    ++sample;
+  });
+  return field;
+}
+
+} // namespace
+
+TEST(Slice, moving_ball_between_and_at_steps) {
+  const auto field = moving_ball();
+  const auto surface = extracted(field, 0, {.precision = Precision::f64});
+  for (const double time : {2.0, 2.1, 2.25, 2.4999, 2.5, 2.9, 3.0}) {
+    const auto cut = sliced(surface, Hyperplane<4>::at(3, time), {Precision::f64});
+    const auto found = measure(cut);
+    EXPECT_TRUE(found->closed) << time;
+    EXPECT_EQ(found->bad_facets, 0u);
+    EXPECT_EQ(found->euler_characteristic, 2);
+    EXPECT_NEAR(found->content / (4 * std::numbers::pi * 1.21), 1, 0.01) << time;
+    EXPECT_NEAR(enclosed_volume(cut) / (4. / 3 * std::numbers::pi * 1.331), 1, 0.02) << time;
+    for (const double component : found->vector_area) EXPECT_NEAR(component, 0, 1e-12);
+  }
+}
+
+// The promise that lets a movie pass through the stored steps: all steps, first and last too, with ties.
+TEST(Slice, at_a_stored_step_it_is_the_extraction_of_that_step) {
+  for (unsigned seed = 0; seed < 4; ++seed)
+    for (const int range : {1, 2, 1000}) {
+      const auto field = random_field<float, 4>({4, 5, 3, 4}, range, seed);
+      const auto surface = extracted(field, 0);
+      for (int axis = 0; axis < 4; ++axis)
+        for (std::int64_t step = 0; step < field.view.dims()[axis]; ++step) {
+          const auto plane = Hyperplane<4>::at(axis, static_cast<double>(step));
+          const auto expected = extract(field.view.at_index(axis, step), 0);
+          const auto cut = sliced(surface, plane);
+          expect_same_mesh(cut, *expected);
+          EXPECT_EQ(cut.edges, expected->edges);
+          expect_same_mesh(*slice(field.view, 0, plane), *expected);
+        }
+    }
+}
+
+TEST(Slice, at_a_stored_plane_of_a_3d_field) {
+  const auto field = random_field<std::int16_t, 3>({5, 4, 6}, 2, 9);
+  const auto surface = extracted(field, 0, {.inside = Inside::below});
+  for (int axis = 0; axis < 3; ++axis)
+    for (std::int64_t layer = 0; layer < field.view.dims()[axis]; ++layer)
+      expect_same_mesh(sliced(surface, Hyperplane<3>::at(axis, static_cast<double>(layer))),
+                       *extract(field.view.at_index(axis, layer), 0, {.inside = Inside::below}));
+}
+
+// Cells around NaN are left out of the surface, on one side of a step or on both; the trace takes what is
+// there.
+TEST(Slice, at_a_stored_step_beside_missing_data) {
+  auto field = random_field<float, 4>({4, 4, 4, 3}, 1000, 5);
+  field.samples[3] = field.samples[70] = std::numeric_limits<float>::quiet_NaN(); // steps 0 and 1
+  const auto cut = sliced(extracted(field, 0), Hyperplane<4>::at(3, 2));
+  const auto whole = simplex_set(*extract(field.view.at_index(3, 2), 0));
+  const auto part = simplex_set(cut);
+  EXPECT_TRUE(std::ranges::includes(whole, part));
+  EXPECT_LT(part.size(), whole.size());
+  expect_same_mesh(*slice(field.view, 0, Hyperplane<4>::at(3, 2)), *extract(field.view.at_index(3, 2), 0));
+}
+
+TEST(Slice, between_steps_the_field_and_the_mesh_give_the_same) {
+  for (unsigned seed = 0; seed < 4; ++seed)
+    for (const int range : {1, 1000}) {
+      const auto field = random_field<float, 4>({4, 3, 5, 4}, range, seed);
+      const auto surface = extracted(field, 0);
+      for (int axis = 0; axis < 4; ++axis)
+        for (const double value : {0.25, 1.5, 1 + 1e-12, 2 - 1e-12}) {
+          const auto plane = Hyperplane<4>::at(axis, value);
+          const auto cut = sliced(surface, plane);
+          expect_same_mesh(*slice(field.view, 0, plane), cut);
+          EXPECT_EQ(measure(cut)->bad_facets, 0u);
+          EXPECT_GT(cut.simplex_count(), 0u);
+        }
+    }
+}
+
+// Rounding a time to f32 moves it past the plane: the vertices of a step must stay on their side of it.
+TEST(Slice, a_time_that_rounding_would_move_across_the_plane) {
+  auto field = moving_ball();
+  for (const double time : {2.25 + 1e-12, 2.5 - 1e-12}) {
+    const auto found = measure(sliced(extracted(field, 0), Hyperplane<4>::at(3, time)));
+    EXPECT_EQ(found->euler_characteristic, 2);
+    EXPECT_TRUE(found->closed);
+  }
+}
+
+// Planes in general position, through vertices, and along whole simplices: no cracks, no clashing neighbours.
+TEST(Slice, any_plane_of_an_island_is_closed_where_it_misses_the_first_and_last_step) {
+  for (unsigned seed = 0; seed < 3; ++seed)
+    for (const int range : {1, 1000}) {
+      auto surface = extracted(random_island(seed, range), 0, {.precision = Precision::f64});
+      std::vector<Hyperplane<4>> planes{
+          {{1, 0, 0, 0}, 2.5}, {{0.3, -0.2, 0.5, 0.1}, 1.2}, {{1, 1, 0, 0}, 4},       {{1, 1, 1, 0}, 6},
+          {{1, 0, 0, 1}, 3},   {{0, -1, 0, 0}, -2},          {{1, -1, 0.5, -0.25}, 0}};
+      for (const bool with_edges : {true, false}) {
+        if (!with_edges) surface.edges.clear();
+        for (const auto& plane : planes) {
+          const auto cut = sliced(surface, plane, {Precision::f64});
+          const auto found = measure(cut);
+          EXPECT_EQ(found->bad_facets, 0u);
+          EXPECT_GT(found->content, 0);
+          // Open only where the plane leaves the first or last step: count the cut's boundary from the
+          // mesh's.
+          const auto walls = measure(surface);
+          EXPECT_GT(walls->boundary_facets, 0u);
+          if (plane.normal[3] == 0) EXPECT_GT(found->boundary_facets, 0u);
+        }
+        EXPECT_TRUE(measure(sliced(surface, {{0, 0, 0, 1}, 1.5}))->closed);
+        EXPECT_TRUE(measure(sliced(surface, {{0, 0, 0, -2}, -2.0}))->closed); // t = 1, a stored step
+        EXPECT_TRUE(measure(sliced(surface, {{1e-3, 0, 1e-3, 1}, 1.5}))->closed);
+      }
+    }
+}
+
+TEST(Slice, does_not_depend_on_the_order_of_simplices) {
+  const auto surface = extracted(random_field<float, 4>({4, 4, 4, 4}, 3, 2), 0);
+  auto shuffled = surface;
+  std::vector<std::size_t> order(surface.simplex_count());
+  std::iota(order.begin(), order.end(), 0u);
+  std::shuffle(order.begin(), order.end(), std::mt19937(4));
+  for (std::size_t simplex = 0; simplex < order.size(); ++simplex)
+    for (std::size_t corner = 0; corner < 4; ++corner)
+      shuffled.simplices.set(simplex * 4 + corner, surface.simplices[order[simplex] * 4 + corner]);
+  for (const Hyperplane<4>& plane :
+       {Hyperplane<4>{{1, 2, 3, 4}, 13.3}, Hyperplane<4>::at(3, 2), Hyperplane<4>::at(1, 1.1)})
+    expect_same_mesh(sliced(surface, plane), sliced(shuffled, plane));
+}
+
+// Normals stay outward and lengths stay true on oblique planes, whichever way the normal points.
+TEST(Slice, oblique_planes_of_a_ball_are_balls_of_their_own) {
+  const auto field = make_field<double, 4>(box_grid<4>(21, -1.5, 1.5), [](const auto& p) {
+    return 1.2 - std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
+  });
+  const auto surface = extracted(field, 0, {.precision = Precision::f64});
+  for (const Hyperplane<4>& plane : {Hyperplane<4>{{1, 0, 0, 0}, 0.4}, Hyperplane<4>{{0, -1, 0, 0}, -0.4},
+                                     Hyperplane<4>{{1, 1, 1, 1}, 0.8}, Hyperplane<4>{{-1, 1, -1, 1}, 0.8},
+                                     Hyperplane<4>{{0, 0, 3, 4}, 2}, Hyperplane<4>{{1e-9, 0, 0, -1}, 0.4}}) {
+    const auto cut = sliced(surface, plane, {Precision::f64});
+    const double radius = std::sqrt(1.2 * 1.2 - 0.4 * 0.4);
+    EXPECT_NEAR(enclosed_volume(cut) / (4. / 3 * std::numbers::pi * std::pow(radius, 3)), 1, 0.03);
+    const auto found = measure(cut);
+    EXPECT_TRUE(found->closed);
+    EXPECT_EQ(found->euler_characteristic, 2);
+  }
+}
+
+TEST(Slice, falling_axes_keep_normals_outward) {
+  for (unsigned reversed = 0; reversed < 16; ++reversed) {
+    Grid<4> grid = box_grid<4>(9, -1.5, 1.5);
+    for (int axis = 0; axis < 4; ++axis)
+      if (reversed >> axis & 1) grid.axes[axis].origin *= -1, grid.axes[axis].spacing *= -1;
+    const auto field = make_field<float, 4>(grid, [](const auto& p) {
+      return 1.2 - std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
+    });
+    const auto surface = extracted(field, 0);
+    for (int axis = 0; axis < 4; ++axis)
+      for (const double value : {0.0, 0.1, 0.375, -0.375}) { // sample, between, sample, sample
+        const auto cut = sliced(surface, Hyperplane<4>::at(axis, value));
+        EXPECT_GT(enclosed_volume(cut), 4);
+        expect_same_mesh(cut, *slice(field.view, 0, Hyperplane<4>::at(axis, value)));
+      }
+  }
+}
+
+TEST(Slice, planes_that_miss_or_mean_nothing) {
+  const auto field = random_field<float, 3>({4, 4, 4}, 5, 1);
+  const auto surface = extracted(field, 0);
+  EXPECT_EQ(sliced(surface, Hyperplane<3>::at(0, 99)).simplex_count(), 0u);
+  const auto missed = slice(field.view, 0, Hyperplane<3>::at(2, 3.01));
+  ASSERT_FALSE(missed);
+  EXPECT_EQ(missed.error().code, Code::outside_domain);
+  for (const Hyperplane<3>& bad :
+       {Hyperplane<3>{}, Hyperplane<3>{{0, 0, 1}, std::nan("")}, Hyperplane<3>{{0, HUGE_VAL, 1}, 0}}) {
+    const auto cut = slice(surface, bad);
+    ASSERT_FALSE(cut);
+    EXPECT_EQ(cut.error().code, Code::invalid_argument);
+  }
+}
+
+TEST(SamplesAround, every_coordinate_of_even_uneven_and_falling_axes) {
+  Axis even{.count = 40, .first = 3, .origin = 0.1, .spacing = 1.0 / 3}, falling = even, uneven;
+  falling.spacing = -0.7;
+  uneven.count = 4;
+  uneven.coordinates = {-1, 0, 5, 5.5};
+  for (const Axis& axis : {even, falling, uneven})
+    for (std::int64_t i = 0; i < axis.count; ++i) {
+      const auto at = samples_around(axis, axis.coordinate(i));
+      ASSERT_TRUE(at);
+      EXPECT_EQ(at->begin, i);
+      EXPECT_EQ(at->end, i + 1);
+      if (i + 1 == axis.count) break;
+      const auto between = samples_around(axis, (axis.coordinate(i) + axis.coordinate(i + 1)) / 2);
+      EXPECT_EQ(between->begin, i);
+      EXPECT_EQ(between->end, i + 2);
+    }
+  EXPECT_FALSE(samples_around(even, 0));
+  EXPECT_FALSE(samples_around(even, std::nan("")));
+}
