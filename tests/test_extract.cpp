@@ -56,16 +56,20 @@ void expect_boundary_on_walls(const OwnedField<T, D>& field, const SimplexMesh<D
 
 template <class T, int D>
 void expect_sound(const OwnedField<T, D>& field, double isovalue, Inside inside) {
-  const auto mesh = extracted(field, isovalue, {.inside = inside});
-  const auto found = measure(mesh);
-  ASSERT_TRUE(found);
-  EXPECT_EQ(found->bad_facets, 0u);
-  EXPECT_EQ(mesh.vertex_count(), (crossed_edges<T, D>(field.view, [&](T value) {
-              return inside == Inside::above ? value >= isovalue : value <= isovalue;
-            })));
-  EXPECT_TRUE(std::ranges::is_sorted(mesh.edges));
-  EXPECT_EQ(std::ranges::adjacent_find(mesh.edges), mesh.edges.end()) << "one crossed edge, one vertex";
-  expect_boundary_on_walls(field, mesh);
+  for (const Method method : {Method::hull, Method::simplicial}) {
+    const auto mesh = extracted(field, isovalue, {.method = method, .inside = inside});
+    const auto found = measure(mesh);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->bad_facets, 0u);
+    const auto is_inside = [&](T value) {
+      return inside == Inside::above ? value >= isovalue : value <= isovalue;
+    };
+    EXPECT_EQ(mesh.vertex_count(),
+              (crossed_edges<T, D>(field.view, is_inside, method == Method::simplicial)));
+    EXPECT_TRUE(std::ranges::is_sorted(mesh.edges));
+    EXPECT_EQ(std::ranges::adjacent_find(mesh.edges), mesh.edges.end()) << "one crossed edge, one vertex";
+    expect_boundary_on_walls(field, mesh);
+  }
 }
 
 template <int D>
@@ -170,34 +174,36 @@ TEST(Extract, permuted_and_mirrored_axes) {
   expect_same_counts_when_axes_are_permuted_or_mirrored<4>({3, 4, 5, 3});
 }
 
-// Content of the unit-dimensional spheres, approached at second order; Euler characteristic 0, 2, 0.
+// Content of the sphere of radius r, approached at second order; Euler characteristic 0, 2, 0 for D = 2,
+// 3, 4.
 template <int D>
-void expect_ball(std::int64_t coarse, double exact) {
-  std::array<double, 2> error;
-  for (int level = 0; level < 2; ++level) {
-    const std::int64_t cells = coarse << level;
-    const auto field = make_field<double, D>(box_grid<D>(cells + 1, -1.6, 1.6),
-                                             [](const auto& p) { return ball<D>(p, 1.03); });
-    const auto mesh = extracted(field, 0, {.precision = Precision::f64});
-    const auto found = measure(mesh);
-    EXPECT_EQ(found->euler_characteristic, D % 2 == 1 ? 2 : 0);
-    EXPECT_EQ(found->components, 1u);
-    EXPECT_TRUE(found->closed);
-    EXPECT_GT(enclosed_volume(mesh), 0) << "normals point outward";
-    error[static_cast<std::size_t>(level)] = std::abs(found->content - exact);
+void expect_ball(std::int64_t coarse, double radius, double exact) {
+  for (const Method method : {Method::hull, Method::simplicial}) {
+    std::array<double, 2> error;
+    for (int level = 0; level < 2; ++level) {
+      const auto field = make_field<double, D>(box_grid<D>((coarse << level) + 1, -1.6, 1.6),
+                                               [&](const auto& p) { return ball<D>(p, radius); });
+      const auto mesh = extracted(field, 0, {.method = method, .precision = Precision::f64});
+      const auto found = measure(mesh);
+      EXPECT_EQ(found->euler_characteristic, D % 2 == 1 ? 2 : 0);
+      EXPECT_EQ(found->components, 1u);
+      EXPECT_TRUE(found->closed);
+      EXPECT_GT(enclosed_volume(mesh), 0) << "normals point outward";
+      error[static_cast<std::size_t>(level)] = std::abs(found->content - exact);
+    }
+    EXPECT_LT(error[1] / exact, 0.01);
+    const double order = std::log2(error[0] / error[1]);
+    EXPECT_GT(order, 1.8) << "errors " << error[0] << ", " << error[1];
+    EXPECT_LT(order, 2.2) << "errors " << error[0] << ", " << error[1];
   }
-  EXPECT_LT(error[1] / exact, 0.01);
-  const double order = std::log2(error[0] / error[1]);
-  EXPECT_GT(order, 1.8) << "errors " << error[0] << ", " << error[1];
-  EXPECT_LT(order, 2.2) << "errors " << error[0] << ", " << error[1];
 }
 
 TEST(Extract, ball_converges_at_second_order) {
   using std::numbers::pi;
   const double r = 1.03;
-  expect_ball<2>(40, 2 * pi * r);
-  expect_ball<3>(24, 4 * pi * r * r);
-  expect_ball<4>(14, 2 * pi * pi * r * r * r);
+  expect_ball<2>(40, r, 2 * pi * r);
+  expect_ball<3>(24, r, 4 * pi * r * r);
+  expect_ball<4>(14, r, 2 * pi * pi * r * r * r);
 }
 
 TEST(Extract, below_is_above_of_the_negated_field) {

@@ -87,6 +87,16 @@ TEST(Slice, at_a_stored_step_it_is_the_extraction_of_that_step) {
     }
 }
 
+TEST(Slice, at_a_stored_step_by_the_simplicial_method) {
+  const auto field = random_field<float, 4>({4, 3, 5, 3}, 2, 8);
+  const ExtractOptions simplicial{.method = Method::simplicial};
+  const auto surface = extracted(field, 0, simplicial);
+  for (int axis = 0; axis < 4; ++axis)
+    for (std::int64_t step = 0; step < field.view.dims()[axis]; ++step)
+      expect_same_mesh(sliced(surface, Hyperplane<4>::at(axis, static_cast<double>(step))),
+                       *extract(field.view.at_index(axis, step), 0, simplicial));
+}
+
 TEST(Slice, at_a_stored_plane_of_a_3d_field) {
   const auto field = random_field<std::int16_t, 3>({5, 4, 6}, 2, 9);
   const auto surface = extracted(field, 0, {.inside = Inside::below});

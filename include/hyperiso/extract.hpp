@@ -15,9 +15,18 @@ enum class Inside {
   below, ///< value <= isovalue
 };
 
+/// How a cell is filled with simplices.
+enum class Method {
+  hull, ///< facets of the convex hull of W+ (paper 000): fewest simplices, vertices on the edges of the grid
+  simplicial, ///< cuts of the D! Kuhn simplices of a cell (paper 004): about five times as many, vertices
+              ///< also on diagonals; the level set of the piecewise linear interpolant, so embedded in every
+              ///< dimension
+};
+
 enum class Precision { f32, f64 };
 
 struct ExtractOptions {
+  Method method = Method::hull;
   Inside inside = Inside::above;
   Precision precision = Precision::f32;    ///< of the positions; they are computed in double in any case
   bool keep_edges = true;                  ///< fill Mesh::edges and Mesh::grid_axes (8 bytes per vertex)
@@ -25,13 +34,13 @@ struct ExtractOptions {
   Progress progress = {};
 };
 
-/// Builds the isosurface of `field` as a welded, oriented mesh of (D-1)-simplices, by the hull table
-/// (paper 000 section 2).
+/// Builds the isosurface of `field` as a welded, oriented mesh of (D-1)-simplices.
 ///
 /// A sample is inside (`+`) iff `value >= isovalue` (or <=, see Inside), compared exactly. Every grid edge
-/// between a `+` and a `-` sample that belongs to a cell without NaN carries one vertex, at
-/// t = (isovalue - a) / (b - a) from its lower end; where one end is infinite it lies on the other, where
-/// both are, in the middle. Vertices ascend by the number of their grid edge, simplices by their cell.
+/// (with `simplicial` every edge of the Kuhn grid) between a `+` and a `-` sample that belongs to a cell
+/// without NaN carries one vertex, at t = (isovalue - a) / (b - a) from its lower end; where one end is
+/// infinite it lies on the other, where both are, in the middle. Vertices ascend by the number of their grid
+/// edge, simplices by their cell.
 ///
 /// Guarantees: every (D-2)-face lies in one or two simplices, in two with opposite orientation; in one only
 /// on the boundary of the grid or of the data (NaN). det[n; v1-v0; ...] > 0 for the normal n from `+` to `-`,

@@ -74,9 +74,9 @@ std::vector<double> distances_beyond(const SimplexMesh<D>& mesh, const Hyperplan
       const auto ends = grid_edge_ends<D>(grid_dims<D>(mesh), mesh.edges[vertex]);
       const Axis& axis = mesh.grid_axes[static_cast<std::size_t>(*across)];
       const double value = plane.offset / plane.normal[*across];
-      const auto [low, high] =
-          std::minmax(axis.coordinate(ends.lower[*across]), axis.coordinate(ends.upper[*across]));
-      distance = (std::clamp(position[*across], low, high) - value) * plane.normal[*across];
+      const double lower = axis.coordinate(ends.lower[*across]), upper = axis.coordinate(ends.upper[*across]);
+      const double between = std::clamp(position[*across], std::min(lower, upper), std::max(lower, upper));
+      distance = (between - value) * plane.normal[*across];
     }
     distances[vertex] = distance;
   }
