@@ -1,6 +1,7 @@
 #include "core/sign.hpp"
 #include "core/text.hpp"
 #include "hyperiso/field.hpp"
+#include "hyperiso/number_array.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -95,4 +96,20 @@ TEST(Text, numbers_read_back_and_sizes_are_for_people) {
   EXPECT_EQ(byte_size(1023), "1023 B");
   EXPECT_EQ(byte_size(1153434), "1.1 MiB");
   EXPECT_EQ(byte_size(UINT64_MAX), "16 EiB");
+}
+
+// Past a few MiB the memory comes from elsewhere, and grows by moving pages.
+TEST(Array, keeps_its_elements_as_it_grows) {
+  Array<std::uint64_t> array;
+  EXPECT_TRUE(array.empty());
+  for (std::uint64_t i = 0; i < 3'000'000; ++i) array.push_back(i * i);
+  ASSERT_EQ(array.size(), 3'000'000u);
+  for (std::uint64_t i = 0; i < array.size(); ++i) ASSERT_EQ(array[i], i * i);
+  array.resize(10);
+  Array<std::uint64_t> copy = array;
+  EXPECT_EQ(copy, array);
+  copy[3] = 0;
+  EXPECT_FALSE(copy == array);
+  array.clear();
+  EXPECT_EQ(array.begin(), array.end());
 }

@@ -37,7 +37,7 @@ struct Mesh {
   /// Where each vertex came from: vertices numbers of grid edges, ascending, or empty (see GridEdge).
   /// `grid_axes` are the axes of that grid; `coordinate` of a vertex along an axis that its edge does not
   /// run along is that of the edge's samples, to the bit (rounded to f32 if positions are).
-  std::vector<GridEdge> edges;
+  Array<GridEdge> edges;
   std::vector<Axis> grid_axes;
 
   std::uint64_t active_cells = 0; ///< grid cells that the simplices came from; 0 if not known

@@ -2,10 +2,13 @@
 /// \file
 /// Arrays whose element width is chosen at run time, in memory that can be reused.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <new>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 namespace hyperiso {
@@ -22,9 +25,13 @@ class Buffer {
 
   /// Room for `bytes`, contents undefined. Keeps the memory it has if that is enough. Throws std::bad_alloc.
   void reset(std::size_t bytes);
+  /// Room for `bytes`, keeping the contents as far as they fit. Growing in small steps costs amortised O(1)
+  /// per byte; on Linux, large blocks move without being copied. Throws std::bad_alloc.
+  void resize(std::size_t bytes);
   void* data() { return data_; }
   const void* data() const { return data_; }
   std::size_t size() const { return size_; }
+  std::size_t capacity() const { return capacity_; }
 
  private:
   void swap(Buffer& other) noexcept {
@@ -37,6 +44,51 @@ class Buffer {
   std::size_t capacity_ = 0;
 };
 
+/// An array in such memory: elements that nobody has set have undefined values.
+template <class T>
+class Array {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+ public:
+  using value_type = T;
+
+  void reset(std::size_t size) { buffer_.reset(bytes_of(size)), size_ = size; }   ///< contents undefined
+  void resize(std::size_t size) { buffer_.resize(bytes_of(size)), size_ = size; } ///< keeps the contents
+  void clear() { size_ = 0; }
+  void push_back(const T& value) {
+    const T copy = value; // `value` may be an element
+    resize(size_ + 1);
+    data()[size_ - 1] = copy;
+  }
+  template <class Iterator>
+  void assign(Iterator begin, Iterator end) {
+    reset(static_cast<std::size_t>(std::distance(begin, end)));
+    std::copy(begin, end, data());
+  }
+
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  T* data() { return static_cast<T*>(buffer_.data()); }
+  const T* data() const { return static_cast<const T*>(buffer_.data()); }
+  T* begin() { return data(); }
+  T* end() { return data() + size_; }
+  const T* begin() const { return data(); }
+  const T* end() const { return data() + size_; }
+  T& operator[](std::size_t i) { return data()[i]; }
+  const T& operator[](std::size_t i) const { return data()[i]; }
+  friend bool operator==(const Array& a, const Array& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end());
+  }
+
+ private:
+  static std::size_t bytes_of(std::size_t size) {
+    if (size > SIZE_MAX / sizeof(T)) throw std::bad_alloc();
+    return size * sizeof(T);
+  }
+  Buffer buffer_;
+  std::size_t size_ = 0;
+};
+
 /// An array of `Narrow` or of `Wide`; reads as `Wide` whichever it is.
 template <class Narrow, class Wide>
 class NumberArray {
@@ -46,15 +98,19 @@ class NumberArray {
 
   /// `size` elements of undefined value; keeps the memory it has if that is enough. Throws std::bad_alloc.
   void reset(std::size_t size, bool wide) {
-    const std::size_t width = wide ? sizeof(Wide) : sizeof(Narrow);
-    if (size > SIZE_MAX / width) throw std::bad_alloc();
-    buffer_.reset(size * width);
+    buffer_.reset(bytes_of(size, wide));
     size_ = size;
     wide_ = wide;
+  }
+  /// `size` elements, the first of them kept; of the same width. Throws std::bad_alloc.
+  void resize(std::size_t size) {
+    buffer_.resize(bytes_of(size, wide_));
+    size_ = size;
   }
   std::size_t size() const { return size_; }
   bool wide() const { return wide_; }
   const void* data() const { return buffer_.data(); }
+  void* data() { return buffer_.data(); }
   std::size_t bytes() const { return size_ * (wide_ ? sizeof(Wide) : sizeof(Narrow)); }
 
   Wide operator[](std::size_t i) const {
@@ -81,6 +137,11 @@ class NumberArray {
   }
 
  private:
+  static std::size_t bytes_of(std::size_t size, bool wide) {
+    const std::size_t width = wide ? sizeof(Wide) : sizeof(Narrow);
+    if (size > SIZE_MAX / width) throw std::bad_alloc();
+    return size * width;
+  }
   Buffer buffer_;
   std::size_t size_ = 0;
   bool wide_ = false;

@@ -1,12 +1,12 @@
 #include "hyperiso/number_array.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <sys/mman.h>
 
 namespace hyperiso {
 namespace {
 
-constexpr std::size_t page = 4096;
 constexpr std::size_t huge_page = std::size_t{2} << 20;
 
 // Large blocks come from mmap, aligned to huge pages and advised to use them; small ones from operator new.
@@ -18,7 +18,8 @@ std::size_t rounded_up(std::size_t bytes, std::size_t unit) {
 }
 
 void* map(std::size_t capacity) {
-  const std::size_t length = rounded_up(capacity, 1) + huge_page;
+  if (capacity > SIZE_MAX - huge_page) throw std::bad_alloc();
+  const std::size_t length = capacity + huge_page;
   void* mapped = mmap(nullptr, length, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (mapped == MAP_FAILED) throw std::bad_alloc();
   const auto start = reinterpret_cast<std::uintptr_t>(mapped);
@@ -30,6 +31,24 @@ void* map(std::size_t capacity) {
   madvise(data, capacity, MADV_HUGEPAGE); // a hint: without it the buffer is merely slower to fill
 #endif
   return data;
+}
+
+void* allocate(std::size_t capacity) {
+  return is_mapped(capacity) ? map(capacity) : ::operator new (capacity, std::align_val_t{64});
+}
+
+// How many bytes to ask for where `bytes` are needed.
+std::size_t capacity_for(std::size_t bytes) {
+  return is_mapped(bytes) ? rounded_up(bytes, huge_page) : rounded_up(bytes, 64);
+}
+
+// Pages of `from` become those of `to`, unread and uncopied; false if the system cannot do it.
+bool move_pages([[maybe_unused]] void* from, [[maybe_unused]] void* to, [[maybe_unused]] std::size_t bytes) {
+#ifdef MREMAP_FIXED
+  return mremap(from, bytes, bytes, MREMAP_MAYMOVE | MREMAP_FIXED, to) != MAP_FAILED;
+#else
+  return false;
+#endif
 }
 
 void release(void* data, std::size_t capacity) {
@@ -55,8 +74,23 @@ void Buffer::reset(std::size_t bytes) {
     if (data_) release(data_, capacity_);
     data_ = nullptr;
     size_ = capacity_ = 0;
-    const std::size_t capacity = is_mapped(bytes) ? rounded_up(bytes, page) : bytes;
-    data_ = is_mapped(capacity) ? map(capacity) : ::operator new (capacity, std::align_val_t{64});
+    const std::size_t capacity = capacity_for(bytes);
+    data_ = allocate(capacity);
+    capacity_ = capacity;
+  }
+  size_ = bytes;
+}
+
+void Buffer::resize(std::size_t bytes) {
+  if (bytes > capacity_) {
+    const std::size_t capacity = capacity_for(std::max(bytes, capacity_ + capacity_ / 2));
+    void* data = allocate(capacity);
+    const bool moved = is_mapped(capacity_) && move_pages(data_, data, capacity_);
+    if (data_ && !moved) {
+      std::memcpy(data, data_, size_);
+      release(data_, capacity_);
+    }
+    data_ = data;
     capacity_ = capacity;
   }
   size_ = bytes;

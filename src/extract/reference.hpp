@@ -142,7 +142,7 @@ SimplexMesh<D> extract_reference(const FieldView<const T, D>& field, double isov
     mesh.simplices.set(corner, static_cast<std::uint64_t>(vertex));
   }
   if (options.keep_edges) {
-    mesh.edges = std::move(edges);
+    mesh.edges.assign(edges.begin(), edges.end());
     mesh.grid_axes.assign(field.grid.axes.begin(), field.grid.axes.end());
   }
   return mesh;
