@@ -21,5 +21,7 @@ install(FILES
   DESTINATION ${package_dir} COMPONENT library)
 
 if(TARGET hyperiso_cli)
+  file(RELATIVE_PATH library_dir /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
+  set_target_properties(hyperiso_cli PROPERTIES INSTALL_RPATH $ORIGIN/${library_dir}) # of a shared library
   install(TARGETS hyperiso_cli COMPONENT program)
 endif()
