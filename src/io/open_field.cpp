@@ -8,38 +8,65 @@
 namespace hyperiso {
 namespace {
 
-using Open = Result<std::unique_ptr<FieldReader>> (*)(const std::filesystem::path&, const ReadOptions&);
+OpenedField open_vti(const std::filesystem::path& path, const ReadOptions& options) {
+  auto step = open_vti_step(path, options);
+  if (!step) return step.error();
+  return std::move(step->reader);
+}
 
 struct Format {
   std::string_view suffix;
-  Open open;
+  OpenedField (*open)(const std::filesystem::path&, const ReadOptions&);
+  bool is_series;
 };
 constexpr Format formats[] = {
-    {".nrrd", open_nrrd},
-    {".nhdr", open_nrrd},
-    {".raw", open_raw},
-    {".bin", open_raw},
+    {".nrrd", open_nrrd, false}, {".nhdr", open_nrrd, false},    {".vti", open_vti, false},
+    {".npy", open_npy, false},   {".raw", open_raw, false},      {".bin", open_raw, false},
+    {".pvd", open_pvd, true},    {".series", open_series, true},
 };
 
-Result<std::unique_ptr<FieldReader>> open_one(const std::filesystem::path& path, const ReadOptions& options) {
-  const std::string suffix = lower_case(path.extension().string());
-  for (const Format& format : formats)
-    if (suffix == format.suffix) return format.open(path, options);
-  // Any file can be raw samples, if the caller says what they are.
-  if (!options.dims.empty()) return open_raw(path, options);
+Error unknown_format(const std::filesystem::path& path) {
   std::string names;
   for (const Format& format : formats) names += text(names.empty() ? "" : ", ", format.suffix);
-  return Error{Code::file_unsupported, text(path.string(), ": fields are not read from ",
-                                            suffix.empty() ? "files without a suffix" : suffix + " files",
-                                            "; they are from ", names)};
+  const std::string suffix = path.extension().string();
+  return {Code::file_unsupported, text(path.string(), ": fields are not read from ",
+                                       suffix.empty() ? "files without a suffix" : suffix, "; they are from ",
+                                       names, ", and from any file whose dims and sample type are given")};
+}
+
+const Format* format_of(const std::filesystem::path& path, const ReadOptions& options) {
+  const std::string suffix = lower_case(path.extension().string());
+  // Any file can be raw samples, if the caller says what they are.
+  static constexpr Format raw{"", open_raw, false};
+  for (const Format& format : formats)
+    if (suffix == format.suffix) return &format;
+  return options.dims.empty() ? nullptr : &raw;
 }
 
 } // namespace
 
+Result<OpenStep> open_step(const std::filesystem::path& path, const ReadOptions& options) {
+  const Format* format = format_of(path, options);
+  if (!format) return unknown_format(path);
+  if (format->is_series)
+    return Error{
+        Code::file_unsupported,
+        text(path.string(), ": is a series of files itself, so that it cannot be one step of another")};
+  if (format->open == open_vti) return open_vti_step(path, options);
+  auto reader = format->open(path, options);
+  if (!reader) return reader.error();
+  return OpenStep{std::move(*reader), std::nullopt};
+}
+
 Result<std::unique_ptr<FieldReader>> open_field(const std::vector<std::filesystem::path>& paths,
                                                 const ReadOptions& options) {
   if (paths.empty()) return Error{Code::invalid_argument, "no file to read a field from"};
-  return without_bad_alloc(paths[0], [&] { return open_one(paths[0], options); });
+  return without_bad_alloc(paths[0], [&]() -> OpenedField {
+    if (paths.size() > 1) return open_list(paths, options);
+    const Format* format = format_of(paths[0], options);
+    if (!format) return unknown_format(paths[0]);
+    return format->open(paths[0], options);
+  });
 }
 
 } // namespace hyperiso

@@ -105,8 +105,7 @@ Result<std::unique_ptr<ByteSource>> open_data_files(const std::filesystem::path&
 
 } // namespace
 
-Result<std::unique_ptr<FieldReader>> open_nrrd(const std::filesystem::path& path,
-                                               const ReadOptions& options) {
+OpenedField open_nrrd(const std::filesystem::path& path, const ReadOptions& options) {
   auto file = InputFile::open(path);
   if (!file) return file.error();
   const auto header = parse_nrrd_header((*file)->characters(), path);

@@ -8,12 +8,11 @@
 
 namespace hyperiso {
 
-Result<std::unique_ptr<FieldReader>> open_raw(const std::filesystem::path& path, const ReadOptions& options) {
+OpenedField open_raw(const std::filesystem::path& path, const ReadOptions& options) {
   if (options.dims.empty() || !options.type)
     return Error{Code::invalid_argument,
                  text(path.string(), ": a raw file needs its dims (axis 0 fastest) and its sample type")};
   StoredField stored;
-  stored.name = path.stem().string();
   stored.type = *options.type;
   stored.axes.resize(options.dims.size());
   for (std::size_t axis = 0; axis < stored.axes.size(); ++axis) stored.axes[axis].count = options.dims[axis];
