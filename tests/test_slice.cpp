@@ -19,9 +19,9 @@ SimplexMesh<D> extracted(const OwnedField<T, D>& field, double isovalue, const E
   return *std::move(mesh);
 }
 
-template <int D>
-SimplexMesh<D - 1> sliced(const SimplexMesh<D>& mesh, const Hyperplane<D>& plane,
-                          const SliceOptions& options = {}) {
+template <int D, int K>
+SimplexMesh<D - 1, K - 1> sliced(const SimplexMesh<D, K>& mesh, const Hyperplane<D>& plane,
+                                 const SliceOptions& options = {}) {
   auto cut = slice(mesh, plane, options);
   EXPECT_TRUE(cut) << cut.error().message;
   return *std::move(cut);
@@ -58,7 +58,7 @@ TEST(Slice, moving_ball_between_and_at_steps) {
   const auto field = moving_ball();
   const auto surface = extracted(field, 0, {.precision = Precision::f64});
   for (const double time : {2.0, 2.1, 2.25, 2.4999, 2.5, 2.9, 3.0}) {
-    const auto cut = sliced(surface, Hyperplane<4>::at(3, time), {Precision::f64});
+    const auto cut = sliced(surface, Hyperplane<4>::at(3, time), {.precision = Precision::f64});
     const auto found = measure(cut);
     EXPECT_TRUE(found->closed) << time;
     EXPECT_EQ(found->bad_facets, 0u);
@@ -156,7 +156,7 @@ TEST(Slice, any_plane_of_an_island_is_closed_where_it_misses_the_first_and_last_
       for (const bool with_edges : {true, false}) {
         if (!with_edges) surface.edges.clear();
         for (const auto& plane : planes) {
-          const auto cut = sliced(surface, plane, {Precision::f64});
+          const auto cut = sliced(surface, plane, {.precision = Precision::f64});
           const auto found = measure(cut);
           EXPECT_EQ(found->bad_facets, 0u);
           EXPECT_GT(found->content, 0);
@@ -196,7 +196,7 @@ TEST(Slice, oblique_planes_of_a_ball_are_balls_of_their_own) {
   for (const Hyperplane<4>& plane : {Hyperplane<4>{{1, 0, 0, 0}, 0.4}, Hyperplane<4>{{0, -1, 0, 0}, -0.4},
                                      Hyperplane<4>{{1, 1, 1, 1}, 0.8}, Hyperplane<4>{{-1, 1, -1, 1}, 0.8},
                                      Hyperplane<4>{{0, 0, 3, 4}, 2}, Hyperplane<4>{{1e-9, 0, 0, -1}, 0.4}}) {
-    const auto cut = sliced(surface, plane, {Precision::f64});
+    const auto cut = sliced(surface, plane, {.precision = Precision::f64});
     const double radius = std::sqrt(1.2 * 1.2 - 0.4 * 0.4);
     EXPECT_NEAR(enclosed_volume(cut) / (4. / 3 * std::numbers::pi * std::pow(radius, 3)), 1, 0.03);
     const auto found = measure(cut);
@@ -235,6 +235,120 @@ TEST(Slice, planes_that_miss_or_mean_nothing) {
     const auto cut = slice(surface, bad);
     ASSERT_FALSE(cut);
     EXPECT_EQ(cut.error().code, Code::invalid_argument);
+  }
+}
+
+// An index leaves out what the plane does not meet and nothing else, on every kind of plane.
+TEST(SliceIndex, gives_what_a_plain_slice_gives) {
+  Grid<4> grid = unit_grid<4>({7, 6, 8, 5});
+  for (Axis& axis : grid.axes) axis.origin = 0.1, axis.spacing = 0.3; // not representable: stored rounded
+  std::mt19937 random(3);
+  const auto field =
+      make_field<float, 4>(grid, [&](const auto&) { return static_cast<double>(random() % 100); });
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    const auto surface = extracted(field, 50, {.precision = precision});
+    const SliceIndex<4> index(surface);
+    std::vector<Hyperplane<4>> planes{{{1, 2, 3, 4}, 8}, {{1, -1, 0.5, -0.25}, 0.1}, {{0, 0, 0, 1}, 99}};
+    for (int axis = 0; axis < 4; ++axis)
+      for (const double place : {0., 1., 1.3, 2., 3.9999999999, 4.}) {
+        const double step = std::floor(place);
+        const double low = grid.axes[axis].coordinate(static_cast<std::int64_t>(step));
+        planes.push_back(Hyperplane<4>::at(axis, low + (place - step) * 0.3));
+      }
+    for (const auto& plane : planes) {
+      const auto expected = sliced(surface, plane);
+      const auto cut = index.slice(surface, plane);
+      ASSERT_TRUE(cut);
+      expect_same_mesh(*cut, expected);
+      EXPECT_EQ(measure(*cut)->bad_facets, 0u);
+    }
+  }
+}
+
+TEST(Slice, unwelded_simplices_are_the_welded_ones) {
+  const auto surface = extracted(random_field<float, 4>({5, 5, 5, 5}, 9, 6), 0.5);
+  const Hyperplane<4> plane{{1, 1, 2, 3}, 12};
+  const auto welded = sliced(surface, plane), soup = sliced(surface, plane, {.welded = false});
+  EXPECT_EQ(soup.vertex_count(), soup.simplex_count() * 3);
+  EXPECT_TRUE(simplex_set(soup) == simplex_set(welded));
+}
+
+// Attributes that are affine in the position stay so; those of simplices follow their simplex.
+TEST(Slice, attributes_come_along) {
+  auto surface = extracted(random_field<double, 3>({5, 6, 7}, 9, 6), 0.5, {.precision = Precision::f64});
+  std::vector<double> affine;
+  for (std::size_t vertex = 0; vertex < surface.vertex_count(); ++vertex)
+    for (const double factor : {1., -3.})
+      affine.push_back(factor * (surface.positions[vertex * 3] + 10 * surface.positions[vertex * 3 + 1]));
+  std::vector<std::int32_t> number(surface.simplex_count());
+  std::iota(number.begin(), number.end(), 0);
+  surface.attributes = {{"affine", Attribute::Location::vertex, 2, affine},
+                        {"number", Attribute::Location::simplex, 1, number}};
+  for (const double z : {2.0, 2.4}) { // along samples and between
+    const auto cut = sliced(surface, Hyperplane<3>::at(2, z), {.precision = Precision::f64});
+    ASSERT_EQ(cut.attributes.size(), 2u);
+    const auto& carried = std::get<std::vector<double>>(cut.attributes[0].values);
+    ASSERT_EQ(carried.size(), 2 * cut.vertex_count());
+    for (std::size_t vertex = 0; vertex < cut.vertex_count(); ++vertex)
+      EXPECT_NEAR(carried[2 * vertex + 1],
+                  -3 * (cut.positions[2 * vertex] + 10 * cut.positions[2 * vertex + 1]), 1e-12);
+    const auto& sources = std::get<std::vector<std::int32_t>>(cut.attributes[1].values);
+    ASSERT_EQ(sources.size(), cut.simplex_count());
+    for (const auto source : sources) ASSERT_LT(static_cast<std::size_t>(source), surface.simplex_count());
+  }
+}
+
+// A cube of six tetrahedra: its cut fills the square, every triangle turned the same way.
+TEST(Slice, volumes_give_volumes) {
+  VolumeMesh<3> cube;
+  cube.positions.reset(24, true);
+  for (unsigned vertex = 0; vertex < 8; ++vertex)
+    for (unsigned k = 0; k < 3; ++k) cube.positions.set(vertex * 3 + k, vertex >> k & 1);
+  const std::vector<std::uint64_t> corners{0, 1, 3, 7, 0, 3, 2, 7, 0, 2, 6, 7,
+                                           0, 6, 4, 7, 0, 4, 5, 7, 0, 5, 1, 7};
+  cube.simplices.reset(corners.size(), false);
+  for (std::size_t i = 0; i < corners.size(); ++i) cube.simplices.set(i, corners[i]);
+  ASSERT_EQ(measure(cube)->inverted_simplices, 0u);
+  for (const auto& [plane, area] :
+       std::vector<std::pair<Hyperplane<3>, double>>{{Hyperplane<3>::at(0, 0.5), 1},
+                                                     {Hyperplane<3>::at(1, 0.25), 1},
+                                                     {Hyperplane<3>{{0, 0, -2}, -0.5}, 1},
+                                                     {Hyperplane<3>{{1, 1, 1}, 1.5}, 0.75 * std::sqrt(3)},
+                                                     {Hyperplane<3>{{1, -1, 0}, 0}, std::sqrt(2)}}) {
+    const auto found = measure(sliced(cube, plane, {.precision = Precision::f64}));
+    EXPECT_NEAR(found->content, area, 1e-12);
+    EXPECT_EQ(found->inverted_simplices, 0u);
+    EXPECT_EQ(found->bad_facets, 0u);
+    EXPECT_EQ(found->euler_characteristic, 1);
+  }
+}
+
+// Coarea: the content of the slices, summed over all offsets, is that of the surface weighed by its slope.
+TEST(Slice, contents_of_all_slices_add_up_to_the_surface) {
+  const auto surface =
+      extracted(random_field<double, 4>({3, 3, 3, 3}, 1000, 2), 0.5, {.precision = Precision::f64});
+  for (const std::array<double, 4>& normal :
+       {std::array<double, 4>{0, 0, 0, 1}, {0.5, 0.5, -0.5, 0.5}, {0.6, 0, 0.8, 0}}) {
+    double weighed = 0;
+    for (std::size_t simplex = 0; simplex < surface.simplex_count(); ++simplex) {
+      Mesh one(4, 3); // its content and unit normal
+      one.positions = surface.positions;
+      one.simplices.reset(4, false);
+      for (std::size_t corner = 0; corner < 4; ++corner)
+        one.simplices.set(corner, surface.simplices[simplex * 4 + corner]);
+      const auto found = measure(one);
+      double along = 0;
+      for (std::size_t k = 0; k < 4; ++k) along += found->vector_area[k] * normal[k];
+      weighed += std::sqrt(std::max(0.0, found->content * found->content - along * along));
+    }
+    double sum = 0;
+    const int steps = 1000;
+    const double low = -2.1, high = 4.1, width = (high - low) / steps;
+    for (int step = 0; step < steps; ++step)
+      sum += measure(sliced(surface, {normal, low + (step + 0.5) * width}, {.precision = Precision::f64}))
+                 ->content *
+             width;
+    EXPECT_NEAR(sum / weighed, 1, 2e-3);
   }
 }
 

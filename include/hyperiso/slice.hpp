@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 namespace hyperiso {
 
@@ -26,29 +27,57 @@ struct Hyperplane {
 
 struct SliceOptions {
   Precision precision = Precision::f32; ///< of the positions; they are computed in double in any case
+  bool welded = true; ///< false: every simplex has vertices of its own, which takes about a third of the time
 };
 
-/// Cuts a surface of (D-1)-simplices in R^D by a hyperplane into a welded, oriented mesh of (D-2)-simplices.
+/// Cuts a mesh of K-simplices in R^D (K = D-1: a surface, K = D: a volume) by a hyperplane into a mesh of
+/// (K-1)-simplices in R^(D-1), welded and oriented as `mesh` is.
 ///
 /// Coordinates: for a plane across one axis, those of the other axes in their order; for an oblique plane,
 /// those along an orthonormal basis of it: the axes without the one most aligned with the normal, made
-/// orthonormal in their order. Normals point from + to -, as in `mesh`.
+/// orthonormal in their order. Normals of a surface point from + to -; simplices of a volume whose simplices
+/// are oriented positively are oriented positively.
 ///
-/// A cut vertex lies on one edge of the mesh; a vertex exactly on the plane counts as beyond it (normal . x
-/// >= offset). So a plane through vertices or along whole simplices needs no special treatment: the cut stays
+/// A cut vertex lies on one edge of the mesh; a vertex exactly on the plane counts as beyond it (normal . x >=
+/// offset). So a plane through vertices or along whole simplices needs no special treatment: the cut stays
 /// a manifold wherever the mesh is one; it may hold simplices without content.
 /// A plane that holds samples (across an axis, at a coordinate of `mesh.grid_axes`) gives the trace of the
-/// mesh there instead: the mesh that `extract` makes of these samples alone, vertex for vertex and simplex
-/// for simplex, with its own grid edges, wherever a cell without NaN touches them. That needs `mesh.edges`;
+/// mesh there instead: the mesh that `extract` makes of these samples alone, vertex for vertex and simplex for
+/// simplex, with its own grid edges, wherever a cell without NaN touches them. That needs `mesh.edges`;
 /// without them such a plane is cut like any other.
 ///
-/// D = 3, 4. The cut depends on the order of the vertices, not of the simplices, and comes out the same for a
-/// mesh and for any slab of it that holds the plane. A plane that misses the mesh gives an empty mesh. Cost:
-/// one pass over the mesh and a sort of the cut. Errors: invalid_argument if the normal is 0 or not finite;
-/// out_of_memory.
-template <int D>
-Result<SimplexMesh<D - 1>> slice(const SimplexMesh<D>& mesh, const Hyperplane<D>& plane,
-                                 const SliceOptions& options = {});
+/// Attributes come along: those of vertices interpolated along the edges, those of simplices copied.
+///
+/// D = 3, 4 for surfaces and for volumes. As a set the cut depends on the order of the vertices, not of the
+/// simplices, and is the same for a mesh and for any slab of it that holds the plane. A plane that misses the
+/// mesh gives an empty mesh.
+/// Cost: one pass over the mesh; 0.1 s for a few million simplices cut. Errors: invalid_argument if the normal
+/// is 0 or not finite; out_of_memory.
+template <int D, int K>
+Result<SimplexMesh<D - 1, K - 1>> slice(const SimplexMesh<D, K>& mesh, const Hyperplane<D>& plane,
+                                        const SliceOptions& options = {});
+
+/// Boxes around groups of simplices that lie together, for many cuts of one mesh: a cut then touches the groups
+/// that the plane meets.
+template <int D, int K = D - 1>
+class SliceIndex {
+ public:
+  /// Cost: sorts the simplices by place, the last axis first (slabs of time), then along a Morton curve.
+  /// About 10 bytes per simplex. Throws std::bad_alloc.
+  explicit SliceIndex(const SimplexMesh<D, K>& mesh);
+
+  /// `slice(mesh, plane, options)`, its simplices in the order of the index. Requires the mesh of the
+  /// constructor, unchanged.
+  Result<SimplexMesh<D - 1, K - 1>> slice(const SimplexMesh<D, K>& mesh, const Hyperplane<D>& plane,
+                                          const SliceOptions& options = {}) const;
+
+ private:
+  struct Group {
+    std::array<double, D> low, high; // the box of its simplices
+  };
+  std::vector<std::uint64_t> order_; // simplices
+  std::vector<Group> groups_;        // of as many simplices each, in that order
+};
 
 /// The same cut straight from the field, without the D-mesh: of the samples around the plane only, if it lies
 /// across an axis. At a coordinate that holds samples it is the extraction of these samples, also where NaN

@@ -1,0 +1,152 @@
+#pragma once
+// A cut through the inside of cells: every simplex with corners on both sides of the plane gives a few
+// simplices of one dimension less, by table, whose corners lie on its edges.
+
+#include "slice/carry.hpp"
+#include "slice/edge_numbers.hpp"
+#include "slice/frame.hpp"
+#include "slice/simplex_corners.hpp"
+#include "table/simplex_cut.hpp"
+
+namespace hyperiso {
+
+// A hyperplane as positions stored in a mesh see it.
+template <int D>
+class CutPlane {
+ public:
+  CutPlane(const Mesh& mesh, const Hyperplane<D>& plane)
+      : plane_(plane), across_(axis_across(plane)), frame_(plane) {
+    if (!across_) return;
+    // x[axis] = value; so that rounding keeps to one side what lies on one side.
+    plane_ = Hyperplane<D>::at(*across_, plane.offset / plane.normal[*across_]);
+    if (!mesh.grid_axes.empty() && !mesh.positions.wide())
+      plane_.offset =
+          among_rounded_samples(mesh.grid_axes[static_cast<std::size_t>(*across_)], plane_.offset);
+    frame_ = Frame<D>(plane_);
+  }
+
+  // How far a point lies beyond the plane.
+  template <class Real>
+  double beyond(const Real* point) const {
+    if (across_) return static_cast<double>(point[*across_]) - plane_.offset;
+    double distance = -plane_.offset;
+    for (int k = 0; k < D; ++k) distance += plane_.normal[k] * static_cast<double>(point[k]);
+    return distance;
+  }
+  std::array<double, D - 1> coordinates(const std::array<double, D>& point) const {
+    return across_ ? without(point, *across_) : frame_.coordinates(point);
+  }
+  bool positive() const { return frame_.positive; }
+
+  bool meets(const std::array<double, D>& low, const std::array<double, D>& high) const {
+    double least = -plane_.offset, most = -plane_.offset;
+    for (int k = 0; k < D; ++k) {
+      const double a = plane_.normal[k] * low[k], b = plane_.normal[k] * high[k];
+      least += std::min(a, b);
+      most += std::max(a, b);
+    }
+    // Sums of the corners' products round like this one or better; the margin covers what they may differ.
+    const double margin = 1e-12 * (std::abs(least) + std::abs(most) + std::abs(plane_.offset));
+    return least <= margin && most >= -margin;
+  }
+
+ private:
+  // Rounding positions to f32 may move them past the plane. Moves a plane that holds samples to where they
+  // are stored, and one between two samples to where these are stored on the sides on which they are.
+  static double among_rounded_samples(const Axis& axis, double value) {
+    const auto around = samples_around(axis, value);
+    if (!around) return value;
+    if (around->end - around->begin == 1) return static_cast<double>(static_cast<float>(value));
+    const double first = axis.coordinate(around->begin), second = axis.coordinate(around->begin + 1);
+    const auto low = static_cast<float>(std::min(first, second)),
+               high = static_cast<float>(std::max(first, second));
+    if (value <= low) return std::nextafter(low, high);
+    return std::min(value, static_cast<double>(high));
+  }
+
+  Hyperplane<D> plane_;
+  std::optional<int> across_;
+  Frame<D> frame_;
+};
+
+// What a cut is made of, before it has positions.
+template <class Index>
+struct CutCorners {
+  std::vector<MeshEdge<Index>> vertices; // the edge of the mesh that each vertex lies on
+  std::vector<Index> corners;            // K vertices for each simplex; empty if no two simplices share any
+  std::vector<std::uint64_t> sources;    // the simplex of the mesh that each simplex lies in
+};
+
+// Cuts the simplices that `for_each_simplex` calls its argument with.
+template <int D, int K, class Real, class Index, class ForEachSimplex>
+CutCorners<Index> cut_corners(std::span<const Real> positions, std::span<const Index> simplices,
+                              const CutPlane<D>& plane, bool welded, const ForEachSimplex& for_each_simplex) {
+  CutCorners<Index> cut;
+  EdgeNumbers<Index> numbers;
+  const auto& table = simplex_cut<K>();
+  for_each_simplex([&](std::uint64_t simplex) {
+    const Index* corners = &simplices[simplex * (K + 1)];
+    unsigned beyond = 0;
+    for (unsigned corner = 0; corner <= K; ++corner)
+      beyond |= (plane.beyond(&positions[std::size_t{corners[corner]} * D]) >= 0 ? 1u : 0u) << corner;
+    if (beyond == 0 || beyond == (1u << (K + 1)) - 1) return;
+
+    const SortedSimplex<Index, K + 1> sorted(corners);
+    unsigned positive = 0;
+    for (unsigned corner = 0; corner <= K; ++corner)
+      for (unsigned place = 0; place <= K; ++place)
+        if (corners[corner] == sorted.corners[place]) positive |= (beyond >> corner & 1) << place;
+    // The normals of a piece point from beyond the plane to before it, along a surface and across a volume.
+    const bool turned = (sorted.even != plane.positive()) != (K == D);
+    for (const auto& piece : table.simplices(positive)) {
+      const std::size_t start = welded ? cut.corners.size() : cut.vertices.size();
+      for (const CornerPair pair : piece) {
+        const MeshEdge<Index> edge{sorted.corners[pair.lower], sorted.corners[pair.upper]};
+        if (welded)
+          cut.corners.push_back(numbers.number(edge));
+        else
+          cut.vertices.push_back(edge);
+      }
+      if (turned && welded) std::swap(cut.corners[start], cut.corners[start + 1]);
+      if (turned && !welded) std::swap(cut.vertices[start], cut.vertices[start + 1]);
+      cut.sources.push_back(simplex);
+    }
+  });
+  if (welded) cut.vertices = numbers.take_edges();
+  return cut;
+}
+
+// The cut of the simplices that `for_each_simplex` calls its argument with.
+template <int D, int K, class ForEachSimplex>
+SimplexMesh<D - 1, K - 1> cut_inside(const SimplexMesh<D, K>& mesh, const Hyperplane<D>& hyperplane,
+                                     const SliceOptions& options, const ForEachSimplex& for_each_simplex) {
+  const CutPlane<D> plane(mesh, hyperplane);
+  SimplexMesh<D - 1, K - 1> result;
+  mesh.positions.visit([&](auto positions) {
+    mesh.simplices.visit([&](auto simplices) {
+      using Index = std::remove_const_t<typename decltype(simplices)::element_type>;
+      const auto cut = cut_corners<D, K>(positions, simplices, plane, options.welded, for_each_simplex);
+      std::vector<double> weights(cut.vertices.size());
+      result.positions.reset(cut.vertices.size() * (D - 1), options.precision == Precision::f64);
+      for (std::size_t vertex = 0; vertex < cut.vertices.size(); ++vertex) {
+        const auto* lower = &positions[std::size_t{cut.vertices[vertex].lower} * D];
+        const auto* upper = &positions[std::size_t{cut.vertices[vertex].upper} * D];
+        const double before = plane.beyond(lower), after = plane.beyond(upper);
+        weights[vertex] = before / (before - after);
+        std::array<double, D> point;
+        for (int k = 0; k < D; ++k)
+          point[k] = static_cast<double>(lower[k]) +
+                     weights[vertex] * (static_cast<double>(upper[k]) - static_cast<double>(lower[k]));
+        const auto coordinates = plane.coordinates(point);
+        for (std::size_t k = 0; k < D - 1; ++k) result.positions.set(vertex * (D - 1) + k, coordinates[k]);
+      }
+      result.simplices.reset(cut.sources.size() * K, cut.vertices.size() > UINT32_MAX);
+      for (std::size_t corner = 0; corner < result.simplices.size(); ++corner)
+        result.simplices.set(corner, options.welded ? cut.corners[corner] : corner);
+      carry_attributes<Index>(mesh, cut.vertices, weights, cut.sources, result);
+    });
+  });
+  return result;
+}
+
+} // namespace hyperiso
