@@ -13,4 +13,5 @@
 #include "hyperiso/sample.hpp"
 #include "hyperiso/slice.hpp"
 #include "hyperiso/statistics.hpp"
+#include "hyperiso/step_source.hpp"
 #include "hyperiso/table.hpp"

@@ -4,6 +4,7 @@
 
 #include "hyperiso/field.hpp"
 #include "hyperiso/mesh.hpp"
+#include "hyperiso/step_source.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -25,16 +26,15 @@ struct ReadOptions {
 
 /// A field in one or several files, open but not yet read: its description is known, its samples are read on
 /// request, step by step where the format allows.
-class FieldReader {
+class FieldReader : public StepSource {
  public:
-  virtual ~FieldReader() = default;
-  const FieldInfo& info() const { return info_; }
+  const FieldInfo& info() const override { return info_; }
 
   /// The samples [begin, end) along the last axis (steps, if it is time). Raw samples in a plain file come
   /// memory-mapped, others are read; only the files and parts needed for those steps are touched where the
   /// format allows it.
   /// Errors: file_unreadable, file_malformed (truncated, bad compression), out_of_memory.
-  virtual Result<Field> read(std::int64_t begin, std::int64_t end) = 0;
+  Result<Field> read(std::int64_t begin, std::int64_t end) override = 0;
   Result<Field> read() { return read(0, info_.axes.back().count); }
 
  protected:
