@@ -2,36 +2,54 @@
 // Exact linear algebra on small integers.
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 
 namespace hyperiso {
 
 template <std::size_t N>
 using IntegerVector = std::array<std::int64_t, N>;
-template <std::size_t N>
-using IntegerMatrix = std::array<IntegerVector<N>, N>; // rows
 
-// By fraction-free elimination (Bareiss): every intermediate number is itself a minor of the matrix, so that
-// nothing overflows as long as the minors, and products of two of them, fit 64 bits.
 template <std::size_t N>
-std::int64_t determinant(IntegerMatrix<N> rows) {
-  std::int64_t previous = 1, sign = 1;
-  for (std::size_t k = 0; k < N; ++k) {
-    std::size_t pivot = k;
-    while (pivot < N && rows[pivot][k] == 0) ++pivot;
-    if (pivot == N) return 0;
-    if (pivot != k) {
-      std::swap(rows[pivot], rows[k]);
-      sign = -sign;
+constexpr std::int64_t dot(const IntegerVector<N>& a, const IntegerVector<N>& b) {
+  std::int64_t sum = 0;
+  for (std::size_t k = 0; k < N; ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+template <std::size_t N>
+constexpr IntegerVector<N> difference(IntegerVector<N> a, const IntegerVector<N>& b) {
+  for (std::size_t k = 0; k < N; ++k) a[k] -= b[k];
+  return a;
+}
+
+// The vector c with dot(x, c) = det[x; rows] for all x: orthogonal to the rows, 0 iff they are dependent.
+// Expands the minors of the first 1, 2, ... rows, each in terms of the ones before.
+template <std::size_t N>
+constexpr IntegerVector<N> cross_product(const std::array<IntegerVector<N>, N - 1>& rows) {
+  constexpr unsigned all = (1u << N) - 1;
+  std::array<std::int64_t, all + 1> minor{1}; // of the columns in a set and as many rows
+  for (unsigned columns = 1; columns < all; ++columns) {
+    const auto& row = rows[static_cast<std::size_t>(std::popcount(columns)) - 1];
+    bool positive = true; // the last column of the last row
+    for (std::size_t k = N; k-- > 0;) {
+      if (!(columns >> k & 1)) continue;
+      const std::int64_t term = row[k] * minor[columns ^ 1u << k];
+      minor[columns] += positive ? term : -term;
+      positive = !positive;
     }
-    for (std::size_t i = k + 1; i < N; ++i)
-      for (std::size_t j = k + 1; j < N; ++j)
-        rows[i][j] = (rows[k][k] * rows[i][j] - rows[i][k] * rows[k][j]) / previous;
-    previous = rows[k][k];
   }
-  return sign * rows[N - 1][N - 1];
+  IntegerVector<N> product;
+  for (std::size_t k = 0; k < N; ++k) product[k] = k % 2 == 0 ? minor[all ^ 1u << k] : -minor[all ^ 1u << k];
+  return product;
+}
+
+// det[first; rows].
+template <std::size_t N>
+constexpr std::int64_t determinant(const IntegerVector<N>& first,
+                                   const std::array<IntegerVector<N>, N - 1>& rows) {
+  return dot(first, cross_product<N>(rows));
 }
 
 } // namespace hyperiso

@@ -24,18 +24,15 @@ IntegerVector<K> midpoint(CornerPair pair) {
 template <std::size_t K>
 bool points_from_positive_to_negative(const std::array<CornerPair, K>& simplex, unsigned positive) {
   const auto [lower, upper] = simplex[0];
-  const bool rising = positive >> lower & 1;
-  IntegerMatrix<K> rows{};
-  rows[0][upper - 1u] += rising ? 1 : -1;
-  if (lower > 0) rows[0][lower - 1u] += rising ? -1 : 1;
-  const auto origin = midpoint<K>(simplex[0]);
-  for (std::size_t k = 1; k < K; ++k) {
-    rows[k] = midpoint<K>(simplex[k]);
-    for (std::size_t axis = 0; axis < K; ++axis) rows[k][axis] -= origin[axis];
-  }
-  const std::int64_t det = determinant(rows);
-  assert(det != 0);
-  return det > 0;
+  IntegerVector<K> normal{};
+  ++normal[upper - 1u];
+  if (lower > 0) --normal[lower - 1u];
+  std::array<IntegerVector<K>, K - 1> sides;
+  for (std::size_t k = 1; k < K; ++k)
+    sides[k - 1] = difference(midpoint<K>(simplex[k]), midpoint<K>(simplex[0]));
+  const std::int64_t volume = determinant(normal, sides);
+  assert(volume != 0);
+  return (volume > 0) == (positive >> lower & 1);
 }
 
 // The staircase that starts at the first + and the first - corner and whose step k goes on to the next +
