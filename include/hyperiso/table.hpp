@@ -47,7 +47,9 @@ class HullTable {
   HullTable();
 
   /// The simplices of one entry: D cube edge numbers each, oriented so that det[n; v1-v0; ...] > 0 for a
-  /// normal n that points from + to -. Ordered the same in every process.
+  /// normal n that points from + to -. Always in the same order: facets ascend by their outward normals
+  /// (coprime integers, axis 0 first), the simplices of a facet by their vertices in lexicographic order; a
+  /// simplex lists its vertices in that order too, but for the last two where its orientation asks for it.
   std::span<const std::uint8_t> simplices(CubeLabels labels) const {
     return std::span(edges_).subspan(first_[labels], first_[labels + 1] - first_[labels]);
   }
@@ -76,8 +78,8 @@ struct TableVerification {
   std::uint64_t edge_use_failures = 0;    ///< entries whose used edges differ from their crossed edges
   std::uint64_t orientation_checks = 0;   ///< (simplex, its edges): normal along the edge from + to -
   std::uint64_t orientation_failures = 0;
-  std::uint64_t face_pairs = 0;         ///< pairs of disjoint faces that could meet for some interpolants
-  std::uint64_t face_intersections = 0; ///< pairs that do (0 for D <= 4: the surface is embedded)
+  std::uint64_t face_pairs = 0; ///< pairs of disjoint faces of an entry, of at most D+2 vertices together
+  std::uint64_t face_intersections = 0; ///< pairs that meet for some interpolants strictly within their edges
 };
 
 /// Recomputes the guarantees of a table from its simplices alone (design notes in docs/tables.md).
