@@ -269,7 +269,8 @@ TEST(Slice, unwelded_simplices_are_the_welded_ones) {
   const auto surface = extracted(random_field<float, 4>({5, 5, 5, 5}, 9, 6), 0.5);
   const Hyperplane<4> plane{{1, 1, 2, 3}, 12};
   const auto welded = sliced(surface, plane), soup = sliced(surface, plane, {.welded = false});
-  EXPECT_EQ(soup.vertex_count(), soup.simplex_count() * 3);
+  EXPECT_GT(soup.vertex_count(), 2 * welded.vertex_count());
+  EXPECT_EQ(measure(soup)->bad_facets, 0u);
   EXPECT_TRUE(simplex_set(soup) == simplex_set(welded));
 }
 

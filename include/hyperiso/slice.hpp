@@ -27,7 +27,8 @@ struct Hyperplane {
 
 struct SliceOptions {
   Precision precision = Precision::f32; ///< of the positions; they are computed in double in any case
-  bool welded = true; ///< false: every simplex has vertices of its own, which takes about a third of the time
+  bool welded =
+      true; ///< false: the pieces of every simplex have vertices of their own; several times as fast
 };
 
 /// Cuts a mesh of K-simplices in R^D (K = D-1: a surface, K = D: a volume) by a hyperplane into a mesh of
@@ -38,12 +39,12 @@ struct SliceOptions {
 /// orthonormal in their order. Normals of a surface point from + to -; simplices of a volume whose simplices
 /// are oriented positively are oriented positively.
 ///
-/// A cut vertex lies on one edge of the mesh; a vertex exactly on the plane counts as beyond it (normal . x >=
-/// offset). So a plane through vertices or along whole simplices needs no special treatment: the cut stays
+/// A cut vertex lies on one edge of the mesh; a vertex exactly on the plane counts as beyond it (normal . x
+/// >= offset). So a plane through vertices or along whole simplices needs no special treatment: the cut stays
 /// a manifold wherever the mesh is one; it may hold simplices without content.
 /// A plane that holds samples (across an axis, at a coordinate of `mesh.grid_axes`) gives the trace of the
-/// mesh there instead: the mesh that `extract` makes of these samples alone, vertex for vertex and simplex for
-/// simplex, with its own grid edges, wherever a cell without NaN touches them. That needs `mesh.edges`;
+/// mesh there instead: the mesh that `extract` makes of these samples alone, vertex for vertex and simplex
+/// for simplex, with its own grid edges, wherever a cell without NaN touches them. That needs `mesh.edges`;
 /// without them such a plane is cut like any other.
 ///
 /// Attributes come along: those of vertices interpolated along the edges, those of simplices copied.
@@ -51,14 +52,14 @@ struct SliceOptions {
 /// D = 3, 4 for surfaces and for volumes. As a set the cut depends on the order of the vertices, not of the
 /// simplices, and is the same for a mesh and for any slab of it that holds the plane. A plane that misses the
 /// mesh gives an empty mesh.
-/// Cost: one pass over the mesh; 0.1 s for a few million simplices cut. Errors: invalid_argument if the normal
-/// is 0 or not finite; out_of_memory.
+/// Cost: one pass over the mesh; 0.1 s for a few million simplices cut. Errors: invalid_argument if the
+/// normal is 0 or not finite; out_of_memory.
 template <int D, int K>
 Result<SimplexMesh<D - 1, K - 1>> slice(const SimplexMesh<D, K>& mesh, const Hyperplane<D>& plane,
                                         const SliceOptions& options = {});
 
-/// Boxes around groups of simplices that lie together, for many cuts of one mesh: a cut then touches the groups
-/// that the plane meets.
+/// Boxes around groups of simplices that lie together, for many cuts of one mesh: a cut then touches the
+/// groups that the plane meets.
 template <int D, int K = D - 1>
 class SliceIndex {
  public:

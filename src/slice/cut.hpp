@@ -69,21 +69,54 @@ class CutPlane {
   Frame<D> frame_;
 };
 
+// A cut of a simplex, its corners in ascending order: the edges that are cut, each once, and the pieces as
+// positions in that list.
+template <int K>
+struct CutShape {
+  static constexpr std::size_t most_edges = (K + 1) * (K + 1) / 4;
+  std::array<CornerPair, most_edges> edges;
+  std::size_t edge_count = 0;
+  std::vector<std::array<std::uint8_t, K>> pieces;
+
+  explicit CutShape(std::span<const typename SimplexCut<K>::Simplex> simplices) {
+    for (const auto& simplex : simplices) {
+      auto& piece = pieces.emplace_back();
+      for (std::size_t corner = 0; corner < K; ++corner) {
+        const auto known =
+            std::find(edges.begin(), edges.begin() + edge_count, simplex[corner]) - edges.begin();
+        if (known == static_cast<std::ptrdiff_t>(edge_count)) edges[edge_count++] = simplex[corner];
+        piece[corner] = static_cast<std::uint8_t>(known);
+      }
+    }
+  }
+};
+
+// By the pattern of corners beyond the plane.
+template <int K>
+const std::vector<CutShape<K>>& cut_shapes() {
+  static const std::vector<CutShape<K>> shapes = [] {
+    std::vector<CutShape<K>> all;
+    for (unsigned pattern = 0; pattern < SimplexCut<K>::patterns; ++pattern)
+      all.emplace_back(simplex_cut<K>().simplices(pattern));
+    return all;
+  }();
+  return shapes;
+}
+
 // What a cut is made of, before it has positions.
 template <class Index>
 struct CutCorners {
-  std::vector<MeshEdge<Index>> vertices; // the edge of the mesh that each vertex lies on
-  std::vector<Index> corners;            // K vertices for each simplex; empty if no two simplices share any
-  std::vector<std::uint64_t> sources;    // the simplex of the mesh that each simplex lies in
+  Array<MeshEdge<Index>> vertices; // the edge of the mesh that each vertex lies on
+  Array<Index> corners;            // K vertices for each simplex
+  Array<std::uint64_t> sources;    // the simplex of the mesh that each simplex lies in
 };
 
-// Cuts the simplices that `for_each_simplex` calls its argument with.
-template <int D, int K, class Real, class Index, class ForEachSimplex>
-CutCorners<Index> cut_corners(std::span<const Real> positions, std::span<const Index> simplices,
-                              const CutPlane<D>& plane, bool welded, const ForEachSimplex& for_each_simplex) {
-  CutCorners<Index> cut;
-  EdgeNumbers<Index> numbers;
-  const auto& table = simplex_cut<K>();
+// Cuts the simplices that `for_each_simplex` calls its argument with. `number` gives the vertex on an edge.
+template <int D, int K, class Real, class Index, class ForEachSimplex, class Number>
+void cut_simplices(std::span<const Real> positions, std::span<const Index> simplices,
+                   const CutPlane<D>& plane, const ForEachSimplex& for_each_simplex, const Number& number,
+                   CutCorners<Index>& cut) {
+  const auto& shapes = cut_shapes<K>();
   for_each_simplex([&](std::uint64_t simplex) {
     const Index* corners = &simplices[simplex * (K + 1)];
     unsigned beyond = 0;
@@ -92,28 +125,68 @@ CutCorners<Index> cut_corners(std::span<const Real> positions, std::span<const I
     if (beyond == 0 || beyond == (1u << (K + 1)) - 1) return;
 
     const SortedSimplex<Index, K + 1> sorted(corners);
-    unsigned positive = 0;
-    for (unsigned corner = 0; corner <= K; ++corner)
-      for (unsigned place = 0; place <= K; ++place)
-        if (corners[corner] == sorted.corners[place]) positive |= (beyond >> corner & 1) << place;
+    unsigned pattern = 0;
+    for (unsigned place = 0; place <= K; ++place) pattern |= (beyond >> sorted.from[place] & 1) << place;
+    const CutShape<K>& shape = shapes[pattern];
+    std::array<Index, CutShape<K>::most_edges> vertices;
+    for (std::size_t edge = 0; edge < shape.edge_count; ++edge)
+      vertices[edge] =
+          number({sorted.corners[shape.edges[edge].lower], sorted.corners[shape.edges[edge].upper]});
+
     // The normals of a piece point from beyond the plane to before it, along a surface and across a volume.
     const bool turned = (sorted.even != plane.positive()) != (K == D);
-    for (const auto& piece : table.simplices(positive)) {
-      const std::size_t start = welded ? cut.corners.size() : cut.vertices.size();
-      for (const CornerPair pair : piece) {
-        const MeshEdge<Index> edge{sorted.corners[pair.lower], sorted.corners[pair.upper]};
-        if (welded)
-          cut.corners.push_back(numbers.number(edge));
-        else
-          cut.vertices.push_back(edge);
-      }
-      if (turned && welded) std::swap(cut.corners[start], cut.corners[start + 1]);
-      if (turned && !welded) std::swap(cut.vertices[start], cut.vertices[start + 1]);
+    for (const auto& piece : shape.pieces) {
+      const std::size_t start = cut.corners.size();
+      cut.corners.resize(start + K);
+      for (std::size_t corner = 0; corner < K; ++corner)
+        cut.corners[start + corner] = vertices[piece[corner]];
+      if (turned) std::swap(cut.corners[start], cut.corners[start + 1]);
       cut.sources.push_back(simplex);
     }
   });
-  if (welded) cut.vertices = numbers.take_edges();
+}
+
+template <int D, int K, class Real, class Index, class ForEachSimplex>
+CutCorners<Index> cut_corners(std::span<const Real> positions, std::span<const Index> simplices,
+                              const CutPlane<D>& plane, bool welded, const ForEachSimplex& for_each_simplex) {
+  CutCorners<Index> cut;
+  if (welded) {
+    EdgeNumbers<Index> numbers(cut.vertices);
+    cut_simplices<D, K>(
+        positions, simplices, plane, for_each_simplex,
+        [&](MeshEdge<Index> edge) { return numbers.number(edge); }, cut);
+  } else {
+    const auto own_vertex = [&](MeshEdge<Index> edge) {
+      cut.vertices.push_back(edge);
+      return static_cast<Index>(cut.vertices.size() - 1);
+    };
+    cut_simplices<D, K>(positions, simplices, plane, for_each_simplex, own_vertex, cut);
+  }
+  if (cut.vertices.size() > std::numeric_limits<Index>::max()) throw std::bad_alloc();
   return cut;
+}
+
+// Places the vertices of a cut: their coordinates in the plane, and their weights from the lower end of their
+// edge.
+template <int D, class Real, class Index, class Stored>
+Array<double> place_vertices(std::span<const Real> positions, const Array<MeshEdge<Index>>& edges,
+                             const CutPlane<D>& plane, std::span<Stored> coordinates) {
+  Array<double> weights;
+  weights.reset(edges.size());
+  for (std::size_t vertex = 0; vertex < edges.size(); ++vertex) {
+    const Real* lower = &positions[std::size_t{edges[vertex].lower} * D];
+    const Real* upper = &positions[std::size_t{edges[vertex].upper} * D];
+    const double before = plane.beyond(lower), after = plane.beyond(upper);
+    const double weight = weights[vertex] = before / (before - after);
+    std::array<double, D> point;
+    for (int k = 0; k < D; ++k)
+      point[k] = static_cast<double>(lower[k]) +
+                 weight * (static_cast<double>(upper[k]) - static_cast<double>(lower[k]));
+    const auto in_plane = plane.coordinates(point);
+    for (std::size_t k = 0; k < D - 1; ++k)
+      coordinates[vertex * (D - 1) + k] = static_cast<Stored>(in_plane[k]);
+  }
+  return weights;
 }
 
 // The cut of the simplices that `for_each_simplex` calls its argument with.
@@ -126,23 +199,11 @@ SimplexMesh<D - 1, K - 1> cut_inside(const SimplexMesh<D, K>& mesh, const Hyperp
     mesh.simplices.visit([&](auto simplices) {
       using Index = std::remove_const_t<typename decltype(simplices)::element_type>;
       const auto cut = cut_corners<D, K>(positions, simplices, plane, options.welded, for_each_simplex);
-      std::vector<double> weights(cut.vertices.size());
       result.positions.reset(cut.vertices.size() * (D - 1), options.precision == Precision::f64);
-      for (std::size_t vertex = 0; vertex < cut.vertices.size(); ++vertex) {
-        const auto* lower = &positions[std::size_t{cut.vertices[vertex].lower} * D];
-        const auto* upper = &positions[std::size_t{cut.vertices[vertex].upper} * D];
-        const double before = plane.beyond(lower), after = plane.beyond(upper);
-        weights[vertex] = before / (before - after);
-        std::array<double, D> point;
-        for (int k = 0; k < D; ++k)
-          point[k] = static_cast<double>(lower[k]) +
-                     weights[vertex] * (static_cast<double>(upper[k]) - static_cast<double>(lower[k]));
-        const auto coordinates = plane.coordinates(point);
-        for (std::size_t k = 0; k < D - 1; ++k) result.positions.set(vertex * (D - 1) + k, coordinates[k]);
-      }
-      result.simplices.reset(cut.sources.size() * K, cut.vertices.size() > UINT32_MAX);
-      for (std::size_t corner = 0; corner < result.simplices.size(); ++corner)
-        result.simplices.set(corner, options.welded ? cut.corners[corner] : corner);
+      const auto weights = result.positions.visit(
+          [&](auto coordinates) { return place_vertices<D>(positions, cut.vertices, plane, coordinates); });
+      result.simplices.reset(cut.corners.size(), sizeof(Index) > sizeof(IndexArray::NarrowType));
+      result.simplices.visit([&](auto corners) { std::ranges::copy(cut.corners, corners.begin()); });
       carry_attributes<Index>(mesh, cut.vertices, weights, cut.sources, result);
     });
   });

@@ -1,9 +1,9 @@
 #pragma once
 // Numbers for the edges of a mesh, in the order they are first asked for.
 
+#include "hyperiso/number_array.hpp"
+
 #include <cstdint>
-#include <limits>
-#include <new>
 #include <vector>
 
 namespace hyperiso {
@@ -20,22 +20,20 @@ struct MeshEdge {
 template <class Index>
 class EdgeNumbers {
  public:
-  EdgeNumbers() : slots_(1024) {}
+  // Puts every edge at its number in `edges`, which must be empty.
+  explicit EdgeNumbers(Array<MeshEdge<Index>>& edges) : slots_(1024), edges_(edges) {}
 
   Index number(MeshEdge<Index> edge) {
     if (edges_.size() * 2 >= slots_.size()) grow();
     std::size_t slot = hash(edge) & (slots_.size() - 1);
     for (;; slot = (slot + 1) & (slots_.size() - 1)) {
       if (slots_[slot].number == 0) {
-        if (edges_.size() == std::numeric_limits<Index>::max()) throw std::bad_alloc();
         edges_.push_back(edge);
         slots_[slot] = {edge, static_cast<Index>(edges_.size())};
       }
       if (slots_[slot].edge == edge) return slots_[slot].number - 1;
     }
   }
-  // Every edge at its number; afterwards no number may be asked for.
-  std::vector<MeshEdge<Index>> take_edges() { return std::move(edges_); }
 
  private:
   struct Slot {
@@ -60,7 +58,7 @@ class EdgeNumbers {
   }
 
   std::vector<Slot> slots_; // a power of two of them, at most half in use
-  std::vector<MeshEdge<Index>> edges_;
+  Array<MeshEdge<Index>>& edges_;
 };
 
 } // namespace hyperiso

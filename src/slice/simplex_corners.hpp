@@ -12,6 +12,7 @@ namespace hyperiso {
 template <class Index, std::size_t Corners>
 struct SortedSimplex {
   std::array<Index, Corners> corners;
+  std::array<unsigned, Corners> from;
   bool even = true;
 
   template <class Stored>
@@ -21,9 +22,11 @@ struct SortedSimplex {
       const auto vertex = static_cast<Index>(simplex[corner]);
       for (; place > 0 && corners[place - 1] > vertex; --place) {
         corners[place] = corners[place - 1];
+        from[place] = from[place - 1];
         even = !even;
       }
       corners[place] = vertex;
+      from[place] = static_cast<unsigned>(corner);
     }
   }
 };

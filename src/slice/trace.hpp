@@ -67,11 +67,15 @@ class Trace {
       }
     for (int from = 0; from < D; ++from)
       if (from != layer_.axis) trace.grid_axes.push_back(mesh_.grid_axes[static_cast<std::size_t>(from)]);
-    std::vector<MeshEdge<std::uint64_t>> ends; // each vertex is one of the mesh: an edge without length
-    for (const auto& [edge, vertex] : vertices) ends.push_back({vertex, vertex});
-    std::vector<std::uint64_t> sources;
+    Array<MeshEdge<std::uint64_t>> ends; // each vertex is one of the mesh: an edge without length
+    Array<double> weights;
+    for (const auto& [edge, vertex] : vertices) {
+      ends.push_back({vertex, vertex});
+      weights.push_back(0);
+    }
+    Array<std::uint64_t> sources;
     for (const Face& face : faces_) sources.push_back(face.source);
-    carry_attributes<std::uint64_t>(mesh_, ends, std::vector<double>(ends.size()), sources, trace);
+    carry_attributes<std::uint64_t>(mesh_, ends, weights, sources, trace);
     return trace;
   }
 
