@@ -11,13 +11,14 @@ namespace hyperiso {
 
 /// One axis of a grid: evenly spaced, or with a coordinate for every sample (rectilinear).
 struct Axis {
-  std::int64_t count = 0;          ///< samples along the axis
-  std::int64_t first = 0;          ///< number of sample 0 on the grid this one was cropped from
-  double origin = 0;               ///< coordinate of that grid's sample 0
-  double spacing = 1;              ///< not 0; negative where coordinates fall with the index
-  std::vector<double> coordinates; ///< empty, or `count` strictly monotone coordinates that replace the above
-  std::string name;                ///< "x", "y", "z", "t", ... ; empty if unknown
-  std::string unit;                ///< "mm", "s", ... ; empty if unknown
+  std::int64_t count = 0; ///< samples along the axis
+  std::int64_t first = 0; ///< number of sample 0 on the grid this one was cropped from
+  double origin = 0;      ///< coordinate of that grid's sample 0
+  double spacing = 1;     ///< not 0; negative where coordinates fall with the index
+  std::vector<double> coordinates =
+      {};                ///< empty, or `count` strictly monotone coordinates that replace the above
+  std::string name = {}; ///< "x", "y", "z", "t", ... ; empty if unknown
+  std::string unit = {}; ///< "mm", "s", ... ; empty if unknown
 
   /// Coordinate of sample `index`. A crop of an axis gives the same bits as the whole axis.
   double coordinate(std::int64_t index) const {
