@@ -12,8 +12,8 @@ namespace hyperiso {
 
 // Vertex i of the cut lies at weights[i] along vertices[i]; simplex i lies in simplex sources[i] of the mesh.
 template <class Index>
-void carry_attributes(const Mesh& mesh, const Array<MeshEdge<Index>>& vertices,
-                      const Array<double>& weights, const Array<std::uint64_t>& sources, Mesh& cut) {
+void carry_attributes(const Mesh& mesh, const Array<MeshEdge<Index>>& vertices, const Array<double>& weights,
+                      const Array<std::uint64_t>& sources, Mesh& cut) {
   const auto on_cut = [&](const Attribute& attribute, const auto& values) {
     const auto components = static_cast<std::size_t>(attribute.components);
     std::decay_t<decltype(values)> carried;
