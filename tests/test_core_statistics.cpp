@@ -89,7 +89,13 @@ TEST(Statistics, huge_values_do_not_overflow) {
   for (const auto& suggestion : found) EXPECT_LT(std::abs(suggestion.isovalue), 1.7e308);
 }
 
-TEST(Memory, there_is_some) { EXPECT_GT(available_memory(), 1u << 20); }
+TEST(Memory, what_a_process_holds_counts) {
+  EXPECT_GT(available_memory(), 1u << 20);
+  const std::uint64_t before = held_memory();
+  const std::vector<char> block(32 << 20, 1);
+  EXPECT_GE(held_memory(), before + block.size() / 2);
+  EXPECT_GE(peak_memory(), block.size());
+}
 
 } // namespace
 } // namespace hyperiso

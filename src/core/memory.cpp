@@ -5,6 +5,7 @@
 #include <fstream>
 #include <optional>
 #include <string>
+#include <sys/resource.h>
 
 namespace hyperiso {
 namespace {
@@ -74,6 +75,18 @@ std::uint64_t available_memory() {
   if (const auto kibibytes = number_after("/proc/meminfo", "MemAvailable:"))
     available = std::min(available, *kibibytes * 1024);
   return available;
+}
+
+std::uint64_t held_memory() { return number_after("/proc/self/status", "RssAnon:").value_or(0) * 1024; }
+
+std::uint64_t peak_memory() {
+  struct rusage usage {};
+  if (::getrusage(RUSAGE_SELF, &usage) != 0) return 0;
+#ifdef __APPLE__
+  return static_cast<std::uint64_t>(usage.ru_maxrss);
+#else
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+#endif
 }
 
 } // namespace hyperiso

@@ -10,4 +10,9 @@ namespace hyperiso {
 // tell.
 std::uint64_t available_memory();
 
+// Bytes of its own that this process holds now, and the most that it ever held with what it maps; 0 where the
+// system does not tell.
+std::uint64_t held_memory();
+std::uint64_t peak_memory();
+
 } // namespace hyperiso

@@ -1,6 +1,7 @@
 #include "hyperiso/statistics.hpp"
 
 #include "core/random.hpp"
+#include "core/rows.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -86,19 +87,11 @@ void StatisticsCollector::add_row(const T* samples, std::int64_t count, std::int
 }
 
 void StatisticsCollector::add(const Field& piece) {
-  const auto& axes = piece.info.axes;
-  if (piece.info.samples() == 0) return;
-  std::vector<std::int64_t> index(axes.size(), 0);
   visit_sample_type(piece.info.type, [&](auto sample) {
     const auto* samples = reinterpret_cast<const decltype(sample)*>(piece.samples.get());
-    for (;;) {
-      std::int64_t offset = 0;
-      for (std::size_t axis = 1; axis < axes.size(); ++axis) offset += index[axis] * piece.strides[axis];
-      add_row(samples + offset, axes[0].count, piece.strides[0]);
-      std::size_t axis = 1;
-      while (axis < axes.size() && ++index[axis] == axes[axis].count) index[axis++] = 0;
-      if (axis >= axes.size()) return;
-    }
+    for_each_row(piece, [&](std::int64_t offset) {
+      add_row(samples + offset, piece.info.axes[0].count, piece.strides[0]);
+    });
   });
 }
 

@@ -1,12 +1,12 @@
 #include "hyperiso/sample.hpp"
 
+#include "core/nearest.hpp"
 #include "core/random.hpp"
 #include "core/text.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <new>
 #include <numbers>
 
@@ -118,24 +118,10 @@ Range range_of(const std::string& name, std::size_t axes_of_space) {
   return {0, 1};
 }
 
+// Integer types are scaled, floating-point types hold the values as they are.
 template <class T>
 double scaled(double value, Range range) {
-  if constexpr (std::is_floating_point_v<T>)
-    return value;
-  else {
-    constexpr double lowest = std::numeric_limits<T>::lowest(), highest = std::numeric_limits<T>::max();
-    return lowest + (value - range.low) / (range.high - range.low) * (highest - lowest);
-  }
-}
-
-template <class T>
-T rounded(double value) {
-  if constexpr (std::is_floating_point_v<T>)
-    return static_cast<T>(value);
-  else {
-    constexpr double lowest = std::numeric_limits<T>::lowest(), highest = std::numeric_limits<T>::max();
-    return static_cast<T>(std::clamp(std::nearbyint(value), lowest, highest));
-  }
+  return std::is_floating_point_v<T> ? value : scaled_to<T>(value, range.low, range.high);
 }
 
 bool has_time(const SampleOptions& options) { return options.time.value_or(options.dims.size() >= 4); }
@@ -203,7 +189,7 @@ Status fill(T* samples, const FieldInfo& info, double still, Range range, const 
     for (std::size_t axis = 0; axis < point.axes; ++axis)
       point.x[axis] = info.axes[axis].coordinate(index[axis]);
     point.time = info.has_time ? info.axes.back().coordinate(index.back()) : still;
-    samples[point.number] = rounded<T>(scaled<T>(value(point), range));
+    samples[point.number] = nearest<T>(scaled<T>(value(point), range));
     ++point.number;
   } while (advance(index, info.axes));
   return {};
