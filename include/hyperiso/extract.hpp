@@ -30,7 +30,8 @@ struct ExtractOptions {
   Inside inside = Inside::above;
   Precision precision = Precision::f32;    ///< of the positions; they are computed in double in any case
   bool keep_edges = true;                  ///< fill Mesh::edges and Mesh::grid_axes (8 bytes per vertex)
-  std::uint64_t memory_limit = UINT64_MAX; ///< bytes the call may allocate
+  std::uint64_t memory_limit = UINT64_MAX; ///< bytes the surface may take
+  int threads = 0;                         ///< 0: one per processor; the result is the same for any number
   Progress progress = {};
 };
 
@@ -53,5 +54,12 @@ struct ExtractOptions {
 template <class T, int D>
 Result<SimplexMesh<D>> extract(const FieldView<const T, D>& field, double isovalue,
                                const ExtractOptions& options = {});
+
+/// The same into `mesh`, replacing what it holds but keeping its memory: to extract again and again costs no
+/// fresh pages, which on large surfaces cost more than the extraction. After an error the mesh holds nothing
+/// of use.
+template <class T, int D>
+Status extract_into(const FieldView<const T, D>& field, double isovalue, const ExtractOptions& options,
+                    SimplexMesh<D>& mesh);
 
 } // namespace hyperiso

@@ -3,12 +3,10 @@
 // give, vertex for vertex and simplex for simplex.
 
 #include "core/sign.hpp"
+#include "extract/cell_corners.hpp"
 #include "hyperiso/extract.hpp"
-#include "hyperiso/table.hpp"
-#include "table/simplex_cut.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 namespace hyperiso {
 
@@ -41,40 +39,6 @@ void for_each_cell(const std::array<std::int64_t, D>& dims, Use&& use) {
   }
 }
 
-// Calls use(lower, upper) for the cube vertices that end the edge of each corner of each simplex, by hull
-// table.
-template <int D, class Use>
-void for_each_hull_corner(CubeLabels labels, Use&& use) {
-  for (const std::uint8_t edge : hull_table<D>().simplices(labels)) {
-    const CubeEdge ends = cube_edge_ends<D>(edge);
-    use(static_cast<unsigned>(ends.lower), static_cast<unsigned>(ends.lower) | 1u << ends.axis);
-  }
-}
-
-// The same for the cuts of the D! Kuhn simplices, each along a monotone path from vertex 0 to the last, in
-// the lexicographic order of their permutations of the axes. Samples ascend along every path, so the
-// staircases of neighbours agree.
-template <int D, class Use>
-void for_each_simplicial_corner(CubeLabels labels, Use&& use) {
-  std::array<int, D> axes;
-  std::iota(axes.begin(), axes.end(), 0);
-  do {
-    std::array<unsigned, D + 1> path{};
-    unsigned positive = labels & 1;
-    for (int step = 0; step < D; ++step) {
-      path[step + 1] = path[step] | 1u << axes[step];
-      positive |= (labels >> path[step + 1] & 1) << (step + 1);
-    }
-    unsigned inversions = 0;
-    for (int i = 0; i < D; ++i)
-      for (int j = 0; j < i; ++j) inversions += axes[j] > axes[i];
-    for (auto simplex : simplex_cut<D>().simplices(positive)) {
-      if (inversions % 2 == 1) std::swap(simplex[0], simplex[1]); // a path turned inside out
-      for (const CornerPair pair : simplex) use(path[pair.lower], path[pair.upper]);
-    }
-  } while (std::ranges::next_permutation(axes).found);
-}
-
 // The grid edges of the simplices' corners, D for each simplex, cell by cell; counts the active cells.
 template <class T, int D, bool Above>
 std::vector<GridEdge> reference_corners(const FieldView<const T, D>& field, SignRule<T, Above> rule,
@@ -91,10 +55,7 @@ std::vector<GridEdge> reference_corners(const FieldView<const T, D>& field, Sign
       for (int axis = 0; axis < D; ++axis) sample[axis] += upper >> axis & 1;
       corners.push_back(grid_edge<D>(dims, sample, lower ^ upper));
     };
-    if (method == Method::hull)
-      for_each_hull_corner<D>(*labels, add_corner);
-    else
-      for_each_simplicial_corner<D>(*labels, add_corner);
+    for_each_cell_corner<D>(method, *labels, add_corner);
   });
   return corners;
 }

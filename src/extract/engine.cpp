@@ -1,0 +1,270 @@
+#include "extract/engine.hpp"
+
+#include "core/parallel.hpp"
+#include "core/text.hpp"
+#include "extract/missing.hpp"
+#include "extract/units.hpp"
+#include "extract/vertex_output.hpp"
+
+#include <atomic>
+
+namespace hyperiso {
+namespace {
+
+template <int D, Method M>
+class Engine {
+ public:
+  Engine(const Samples<D>& samples, bool mirrored, const ExtractOptions& options,
+         const EngineOptions& engine_options, SimplexMesh<D>& mesh)
+      : samples_(samples), options_(options), engine_options_(engine_options), mesh_(mesh),
+        grid_(samples.dims), workers_(worker_count(options.threads)),
+        kernels_(kernels<D, M>(engine_options.instructions)),
+        row_kernels_(row_kernels(samples.test.type, engine_options.instructions)),
+        table_(march_table<D, M>(mirrored)), plan_(plan_units(grid_, workers_, engine_options.unit_samples)) {
+  }
+
+  Status run() {
+    prepare_numbers();
+    if (Status status = scan(); !status) return status;
+    if (found_missing_) {
+      present_ = find_present_cells(samples_, grid_, row_kernels_, workers_);
+      if (Status status = scan(); !status) return status;
+    }
+    number_planes();
+    return emit();
+  }
+
+ private:
+  using Edges = CellEdges<D, M>;
+
+  // The share of the work that phase 1 is taken to be, for progress.
+  static constexpr double scan_share = 0.7;
+
+  void prepare_numbers() {
+    numbers_.plane_rows = plan_.linked && plan_.blocks > 1 ? grid_.halo : grid_.layer_rows;
+    // A plane's vertices are counted in 32 bits.
+    const auto most_in_row = static_cast<std::uint64_t>(grid_.dims[0]) * Edges::directions;
+    if (static_cast<std::uint64_t>(numbers_.plane_rows) > UINT32_MAX / most_in_row) numbers_.plane_rows = 1;
+    numbers_.row_first.reset(static_cast<std::size_t>(grid_.rows) * Edges::directions);
+    numbers_.plane_first.reset(static_cast<std::size_t>(grid_.rows / numbers_.plane_rows));
+  }
+
+  // Phase 1 -----------------------------------------------------------------------------------------------
+
+  // A unit's vertices that wait for their numbers.
+  struct Pending {
+    std::size_t unit;
+    std::uint64_t written; // of them, so far
+    VertexBatch batch;
+  };
+  struct Worker {
+    Engine* engine;
+    Cells<D> cells;
+    MaskWindow window;              // if units are not linked
+    std::vector<Pending> pending;   // the last is that of the current unit
+    std::vector<VertexBatch> spare; // empty, to be used again
+  };
+
+  Status scan() {
+    const std::size_t units = plan_.units.size();
+    ledger_.emplace(units);
+    output_.emplace(mesh_, options_.precision == Precision::f64, options_.keep_edges, options_.memory_limit);
+    unit_cells_.assign(units, {});
+    windows_.assign(plan_.linked ? plan_.blocks : 0, {});
+    worker_state_.clear();
+    worker_state_.resize(static_cast<std::size_t>(workers_));
+    found_missing_ = cancelled_ = false;
+    next_unit_ = 0;
+    run_workers(workers_, [&](int worker) {
+      try {
+        scan_units(static_cast<std::size_t>(worker));
+      } catch (...) {
+        ledger_->stop(); // the others may be waiting for this one
+        throw;
+      }
+    });
+    if (cancelled_) return cancelled();
+    if (found_missing_) return {};
+    for (const UnitCells& unit : unit_cells_) {
+      vertices_ += unit.vertices;
+      simplices_ += unit.simplices;
+      active_cells_ += unit.active_cells;
+    }
+    return check_memory();
+  }
+
+  void scan_units(std::size_t worker_number) {
+    Worker& worker = worker_state_[worker_number];
+    worker.engine = this;
+    for (std::size_t unit; (unit = next_unit_++) < plan_.units.size();) {
+      if (const auto before = plan_.before(unit); before && !ledger_->wait_for(*before)) return;
+      if (!scan_unit(worker, worker_number, unit)) return ledger_->stop();
+      write_known(worker);
+      if (worker_number == 0 &&
+          !report(scan_share * static_cast<double>(unit + 1) / static_cast<double>(plan_.units.size())))
+        return ledger_->stop();
+      if (ledger_->stopped()) return;
+    }
+    while (!worker.pending.empty()) {
+      if (!ledger_->wait_for_first_vertex(worker.pending.front().unit)) return;
+      write_known(worker);
+    }
+  }
+
+  bool scan_unit(Worker& worker, std::size_t worker_number, std::size_t unit) {
+    worker.pending.push_back({unit, 0, {}});
+    if (!worker.spare.empty()) {
+      worker.pending.back().batch = std::move(worker.spare.back());
+      worker.spare.pop_back();
+    }
+    UnitCells& result = unit_cells_[unit];
+    result.worker = worker_number;
+    MaskWindow& window = plan_.linked ? windows_[plan_.units[unit].window] : worker.window;
+    ScanJob<D> job{&samples_,
+                   &grid_,
+                   &row_kernels_,
+                   &present_,
+                   &table_,
+                   options_.precision == Precision::f64,
+                   options_.keep_edges,
+                   &numbers_,
+                   plan_.units[unit],
+                   &window,
+                   &worker.cells,
+                   &worker.pending.back().batch,
+                   &worker,
+                   [](void* owner) { write_current(*static_cast<Worker*>(owner)); },
+                   &result,
+                   false};
+    kernels_.scan(job);
+    if (job.found_missing) return found_missing_ = true, false;
+    ledger_->finish(unit, result.vertices);
+    return true;
+  }
+
+  // Writes the vertices of the current unit that there are so far, if all before them are counted.
+  static void write_current(Worker& worker) {
+    Pending& current = worker.pending.back();
+    const auto first = worker.engine->ledger_->first_vertex(current.unit);
+    if (first) worker.engine->write(*first, current);
+  }
+  // The same for all its units, done with those.
+  void write_known(Worker& worker) {
+    std::erase_if(worker.pending, [&](Pending& pending) {
+      const auto first = ledger_->first_vertex(pending.unit);
+      if (!first) return false;
+      write(*first, pending);
+      worker.spare.push_back(std::move(pending.batch));
+      return true;
+    });
+  }
+  void write(std::uint64_t first, Pending& pending) {
+    const std::size_t count = pending.batch.count;
+    output_->write(first + pending.written, pending.batch);
+    pending.written += count;
+  }
+
+  // Between the phases ------------------------------------------------------------------------------------
+
+  bool report(double share) {
+    if (!options_.progress || options_.progress(share)) return true;
+    cancelled_ = true;
+    return false;
+  }
+  static Error cancelled() { return {Code::cancelled, "the extraction was cancelled"}; }
+
+  Status check_memory() {
+    wide_indices_ = engine_options_.wide_indices || vertices_ > UINT32_MAX;
+    const std::uint64_t index_bytes = wide_indices_ ? sizeof(std::uint64_t) : sizeof(std::uint32_t);
+    if (simplices_ > SIZE_MAX / (D * sizeof(std::uint64_t))) throw std::bad_alloc();
+    const std::uint64_t needed = vertices_ * output_->bytes_per_vertex() + simplices_ * D * index_bytes;
+    if (needed > options_.memory_limit)
+      return Error{Code::out_of_memory,
+                   text("the surface of ", vertices_, " vertices and ", simplices_, " simplices needs ",
+                        byte_size(needed), ", the limit is ", byte_size(options_.memory_limit))};
+    output_->finish(vertices_);
+    mesh_.active_cells = active_cells_;
+    mesh_.simplices.reset(static_cast<std::size_t>(simplices_) * D, wide_indices_);
+    return {};
+  }
+
+  // Planes count from their unit's first vertex so far.
+  void number_planes() {
+    for (std::size_t number = 0; number < plan_.units.size(); ++number) {
+      const Unit& unit = plan_.units[number];
+      const std::uint64_t first = *ledger_->first_vertex(number);
+      for (std::int64_t layer = unit.first_layer; layer < unit.end_layer; ++layer)
+        for (std::int64_t row = unit.first_row; row < unit.end_row; row += numbers_.plane_rows)
+          numbers_.plane_first[static_cast<std::size_t>((layer * grid_.layer_rows + row) /
+                                                        numbers_.plane_rows)] += first;
+    }
+  }
+
+  // Phase 2 -----------------------------------------------------------------------------------------------
+
+  Status emit() {
+    std::vector<std::uint64_t> first_simplex{0};
+    for (const UnitCells& unit : unit_cells_) first_simplex.push_back(first_simplex.back() + unit.simplices);
+    std::atomic<std::size_t> next = 0;
+    std::atomic<bool> stopped = false;
+    run_workers(workers_, [&](int worker) {
+      for (std::size_t unit; !stopped && (unit = next++) < unit_cells_.size();) {
+        emit_unit(unit_cells_[unit], first_simplex[unit]);
+        const double share = static_cast<double>(unit + 1) / static_cast<double>(unit_cells_.size());
+        if (worker == 0 && !report(scan_share + (1 - scan_share) * share)) stopped = true;
+      }
+    });
+    if (cancelled_) return cancelled();
+    return {};
+  }
+
+  void emit_unit(const UnitCells& unit, std::uint64_t first_simplex) {
+    if (unit.simplices == 0) return;
+    const std::size_t index_bytes = wide_indices_ ? sizeof(std::uint64_t) : sizeof(std::uint32_t);
+    auto* corners = static_cast<std::byte*>(mesh_.simplices.data()) + first_simplex * D * index_bytes;
+    const EmitJob<D> job{&grid_, &table_, &numbers_, &worker_state_[unit.worker].cells, &unit, corners, true};
+    wide_indices_ ? kernels_.emit_wide(job) : kernels_.emit_narrow(job);
+  }
+
+  const Samples<D>& samples_;
+  const ExtractOptions& options_;
+  const EngineOptions& engine_options_;
+  SimplexMesh<D>& mesh_;
+  const RowGrid<D> grid_;
+  const int workers_;
+  const Kernels<D, M> kernels_;
+  const RowKernels row_kernels_;
+  const MarchTable<D>& table_;
+  const UnitPlan<D> plan_;
+
+  PresentCells present_;
+  VertexNumbers numbers_;
+  std::vector<MaskWindow> windows_; // if units are linked: one per block
+  std::vector<Worker> worker_state_;
+  std::vector<UnitCells> unit_cells_;
+  std::optional<Ledger> ledger_;
+  std::optional<VertexOutput> output_;
+  std::atomic<std::size_t> next_unit_ = 0;
+  std::atomic<bool> found_missing_ = false, cancelled_ = false;
+  std::uint64_t vertices_ = 0, simplices_ = 0, active_cells_ = 0;
+  bool wide_indices_ = false;
+};
+
+} // namespace
+
+template <int D>
+Status run_engine(const Samples<D>& samples, bool mirrored, const ExtractOptions& options,
+                  const EngineOptions& engine_options, SimplexMesh<D>& mesh) {
+  return options.method == Method::hull
+             ? Engine<D, Method::hull>(samples, mirrored, options, engine_options, mesh).run()
+             : Engine<D, Method::simplicial>(samples, mirrored, options, engine_options, mesh).run();
+}
+
+template Status run_engine(const Samples<2>&, bool, const ExtractOptions&, const EngineOptions&,
+                           SimplexMesh<2>&);
+template Status run_engine(const Samples<3>&, bool, const ExtractOptions&, const EngineOptions&,
+                           SimplexMesh<3>&);
+template Status run_engine(const Samples<4>&, bool, const ExtractOptions&, const EngineOptions&,
+                           SimplexMesh<4>&);
+
+} // namespace hyperiso

@@ -1,0 +1,47 @@
+#pragma once
+// The extraction engine. Read this first.
+//
+// A field is rows of samples along axis 0. The engine marches over the rows twice: once over the samples,
+// once over what it noted down.
+//
+// Phase 1, scan (kernels/row_masks.hpp, scan.hpp, vertices.hpp). Each row of samples becomes a bit mask:
+// which samples are inside. The exclusive or of a row's mask with that of the row before it along an axis is
+// the set of crossed edges of that direction that end in the row; each becomes a vertex at once, while the
+// samples are in the cache. No index array leads from edges to vertices: the number of a vertex is that of
+// the first of its row and direction, which is noted down, plus the number of bits before its own. A cell is
+// active if its 2^(D-1) rows' masks, at x and x + 1, are neither all 0 nor all 1. The masks of a row of cells
+// are transposed into columns of labels; two neighbouring columns are a cell's code, and the codes of the
+// active cells go to a list, row by row.
+//
+// Phase 2, emit (kernels/emit.hpp). The codes alone tell how the numbers of the vertices go on along a row of
+// cells (cell_edges.hpp has the numbering). A table (march_table.hpp) gives the simplices of a code; their
+// corners are looked up among the numbers of the cell's edges and written out.
+//
+// Threads (units.hpp, vertex_output.hpp). The rows are parted into units, in memory order; a worker takes the
+// next unit when it has done one. A worker cannot know how many vertices the units before its own will give:
+// it keeps its vertices in a small batch until that is known, then writes them where they belong. After phase
+// 1 all counts are known, and every unit of phase 2 knows where it writes. So the result does not depend on
+// the number of threads.
+//
+// Only the functions on one row of samples know the sample type (samples.hpp). The loops are compiled once
+// for each set of instructions (kernels.hpp) and give the same bytes with each. The reference loop
+// (reference.hpp) defines what they must give.
+
+#include "extract/kernels.hpp"
+
+namespace hyperiso {
+
+// What tests choose, and nobody else.
+struct EngineOptions {
+  Instructions instructions = best_instructions();
+  bool wide_indices = false;     // 64-bit vertex numbers although 32 bits would do
+  std::int64_t unit_samples = 0; // about how many samples a unit has; 0: as fits the caches and the threads
+};
+
+// Extracts into `mesh`, in the memory it has if that is enough. `mesh.positions`, `simplices`, `edges` and
+// `active_cells` are set. Every axis has at least two samples. Throws std::bad_alloc.
+template <int D>
+Status run_engine(const Samples<D>& samples, bool mirrored, const ExtractOptions& options,
+                  const EngineOptions& engine_options, SimplexMesh<D>& mesh);
+
+} // namespace hyperiso
