@@ -50,6 +50,32 @@ std::string base64_of(const std::vector<std::uint64_t>& numbers) {
 
 } // namespace
 
+std::string xml_escaped(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    switch (c) {
+    case '&':
+      escaped += "&amp;";
+      break;
+    case '<':
+      escaped += "&lt;";
+      break;
+    case '>':
+      escaped += "&gt;";
+      break;
+    case '"':
+      escaped += "&quot;";
+      break;
+    case '\n': // as itself it would be read as a space
+      escaped += "&#10;";
+      break;
+    default:
+      escaped += static_cast<unsigned char>(c) < ' ' ? '_' : c;
+    }
+  }
+  return escaped;
+}
+
 void Base64Encoder::append(std::span<const unsigned char> bytes, std::string& text) {
   while (pending_count_ > 0 && pending_count_ < 3 && !bytes.empty()) {
     pending_[pending_count_++] = bytes.front();

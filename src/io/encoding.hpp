@@ -12,6 +12,9 @@
 
 namespace hyperiso {
 
+// `text` as the value of an XML attribute in double quotes. Control characters that XML cannot hold become _.
+std::string xml_escaped(std::string_view text);
+
 // Base64 (RFC 4648) of bytes that come in pieces.
 class Base64Encoder {
  public:

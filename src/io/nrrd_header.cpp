@@ -56,15 +56,6 @@ std::string_view usual_spelling(std::string_view name) {
   return {};
 }
 
-// Takes a line off the front, without its end.
-std::string_view next_line(std::string_view& rest) {
-  const std::size_t end = rest.find('\n');
-  std::string_view line = rest.substr(0, end);
-  rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-  return line;
-}
-
 // \n and \\ in keys and values.
 std::string unescaped(std::string_view words) {
   std::string result;

@@ -37,6 +37,15 @@ std::string_view next_word(std::string_view& rest, IsSeparator is_separator) {
   return word;
 }
 
+// The next line, taken off the front of `rest`, without its end.
+inline std::string_view next_line(std::string_view& rest) {
+  const std::size_t end = rest.find('\n');
+  std::string_view line = rest.substr(0, end);
+  rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  return line;
+}
+
 inline std::vector<std::string_view> split(std::string_view words) {
   std::vector<std::string_view> result;
   for (std::string_view word; !(word = next_word(words, is_space)).empty();) result.push_back(word);

@@ -2,24 +2,16 @@
 
 #include "core/text.hpp"
 #include "io/encoding.hpp"
+#include "io/parse.hpp"
 
 #include <algorithm>
 #include <bit>
-#include <charconv>
 #include <cstring>
 #include <optional>
 #include <zlib.h>
 
 namespace hyperiso {
 namespace {
-
-constexpr std::string_view blanks = " \t\r\n";
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(blanks);
-  return first == text.npos ? std::string_view{}
-                            : text.substr(first, text.find_last_not_of(blanks) + 1 - first);
-}
 
 bool remove_suffix(std::string_view& text, std::string_view suffix) {
   text = trimmed(text);
@@ -76,7 +68,7 @@ std::optional<Skeleton> skeleton_of(std::string_view file) {
     file.remove_prefix(length);
     constexpr std::string_view appended = "<AppendedData";
     if (!tag.starts_with(appended) || tag.ends_with("/>") ||
-        (blanks.find(tag[appended.size()]) == blanks.npos && tag[appended.size()] != '>'))
+        (!is_space(tag[appended.size()]) && tag[appended.size()] != '>'))
       continue;
     if (!remove_suffix(file, "</VTKFile>") || !remove_suffix(file, "</AppendedData>")) return std::nullopt;
     skeleton.appended = file;
@@ -86,19 +78,20 @@ std::optional<Skeleton> skeleton_of(std::string_view file) {
   return skeleton;
 }
 
+constexpr const char* type_names[] = {"Int8",   "UInt8", "Int16",  "UInt16",  "Int32",
+                                      "UInt32", "Int64", "UInt64", "Float32", "Float64"};
+
 std::optional<VtkType> type_named(std::string_view name) {
-  constexpr std::string_view names[] = {"Int8",   "UInt8", "Int16",  "UInt16",  "Int32",
-                                        "UInt32", "Int64", "UInt64", "Float32", "Float64"};
   if (name == "String") return VtkType::u8;
-  const auto* found = std::find(std::begin(names), std::end(names), name);
-  if (found == std::end(names)) return std::nullopt;
-  return static_cast<VtkType>(found - std::begin(names));
+  const auto* found = std::find(std::begin(type_names), std::end(type_names), name);
+  if (found == std::end(type_names)) return std::nullopt;
+  return static_cast<VtkType>(found - std::begin(type_names));
 }
 
 // The bytes that a binary text holds, in order. Texts encoded one after the other, each padded, read as one.
-class ByteSource {
+class EncodedBytes {
  public:
-  ByteSource(VtkArray::Encoding encoding, std::string_view content)
+  EncodedBytes(VtkArray::Encoding encoding, std::string_view content)
       : encoded_(encoding == VtkArray::Encoding::base64), content_(content) {}
 
   // False if fewer bytes are left, or what is left is not base64.
@@ -124,7 +117,7 @@ class ByteSource {
 };
 
 // Words of 4 or 8 bytes. Callers have checked `count` against what the source can hold.
-std::optional<std::vector<std::uint64_t>> read_words(ByteSource& source, std::uint64_t count, bool wide,
+std::optional<std::vector<std::uint64_t>> read_words(EncodedBytes& source, std::uint64_t count, bool wide,
                                                      bool swapped) {
   std::vector<std::uint64_t> words(count);
   for (std::uint64_t& word : words) {
@@ -135,26 +128,6 @@ std::optional<std::vector<std::uint64_t>> read_words(ByteSource& source, std::ui
     std::memcpy(&word, bytes, 8);
   }
   return words;
-}
-
-std::string_view next_token(std::string_view& text) {
-  text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
-  const std::string_view token = text.substr(0, text.find_first_of(blanks));
-  text.remove_prefix(token.size());
-  return token;
-}
-
-template <class T>
-bool parse_number(std::string_view token, T& value) {
-  if (token.starts_with('+')) token.remove_prefix(1);
-  const char* end = token.data() + token.size();
-  // Small integers as numbers, not as characters.
-  std::conditional_t<sizeof(T) == 1, int, T> number{};
-  const auto [stop, problem] = std::from_chars(token.data(), end, number);
-  value = static_cast<T>(number);
-  if constexpr (sizeof(T) == 1)
-    if (static_cast<int>(value) != number) return false;
-  return problem == std::errc{} && stop == end;
 }
 
 bool inflate_block(const std::vector<unsigned char>& compressed, unsigned char* destination,
@@ -172,6 +145,8 @@ void swap_bytes(unsigned char* data, std::uint64_t values, std::size_t width) {
 std::size_t size_of(VtkType type) {
   return visit_vtk_type(type, [](auto value) { return sizeof value; });
 }
+
+const char* name_of(VtkType type) { return type_names[static_cast<int>(type)]; }
 
 Error VtkXml::malformed(const std::string& what) const {
   return Error{Code::file_malformed, text(name_, ": ", what)};
@@ -248,16 +223,16 @@ Status VtkXml::locate(pugi::xml_node node, VtkArray& array) const {
   }
   if (format != "ascii" && format != "binary")
     return malformed(text("array \"", array.name, "\" has the format \"", format, "\" and no offset"));
-  std::size_t number = 0;
   if (const std::string_view placeholder = node.child_value(); !placeholder.empty()) {
-    if (!parse_number(placeholder, number) || number >= texts_.size())
+    const auto number = number_from<std::size_t>(placeholder);
+    if (!number || *number >= texts_.size())
       return malformed(text("array \"", array.name, "\" holds more than text"));
-    array.content = texts_[number];
+    array.content = texts_[*number];
   }
   array.encoding = format == "ascii" ? VtkArray::Encoding::ascii : VtkArray::Encoding::base64;
   if (format == "binary") return measure_binary(array);
   array.values = 0;
-  for (std::string_view rest = array.content; !next_token(rest).empty();) ++array.values;
+  for (std::string_view rest = array.content; !next_word(rest, is_space).empty();) ++array.values;
   return {};
 }
 
@@ -271,7 +246,7 @@ Status VtkXml::measure_binary(VtkArray& array) const {
   array.header_bytes = 0;
   array.block_bytes = 0;
   if (array.content.empty() && array.encoding == VtkArray::Encoding::base64) return {}; // an empty array
-  ByteSource source(array.encoding, array.content);
+  EncodedBytes source(array.encoding, array.content);
   std::uint64_t bytes = 0;
   if (compressor_.empty()) {
     const auto header = read_words(source, 1, wide_header_, swapped);
@@ -292,7 +267,7 @@ Status VtkXml::measure_binary(VtkArray& array) const {
     if (!sizes) return damaged;
     array.compressed_sizes = std::move(*sizes);
     array.content = source.rest();
-    std::uint64_t available = ByteSource(array.encoding, array.content).most_bytes();
+    std::uint64_t available = EncodedBytes(array.encoding, array.content).most_bytes();
     for (std::uint64_t i = 0; i < blocks; ++i) {
       const std::uint64_t size = array.compressed_sizes[i];
       const std::uint64_t expanded = i + 1 == blocks && last > 0 ? last : array.block_bytes;
@@ -314,14 +289,18 @@ Status VtkXml::read(const VtkArray& array, void* destination) const {
     return visit_vtk_type(array.type, [&](auto zero) -> Status {
       auto* values = static_cast<decltype(zero)*>(destination);
       std::string_view rest = array.content;
-      for (std::uint64_t i = 0; i < array.values; ++i)
-        if (const auto token = next_token(rest); !parse_number(token, values[i]))
-          return malformed(text("array \"", array.name, "\": \"", token, "\" is no value of its type"));
+      for (std::uint64_t i = 0; i < array.values; ++i) {
+        const auto word = next_word(rest, is_space);
+        const auto number = number_from<decltype(zero)>(word);
+        if (!number)
+          return malformed(text("array \"", array.name, "\": ", in_quotes(word), " is no value of its type"));
+        values[i] = *number;
+      }
       return {};
     });
 
   auto* bytes = static_cast<unsigned char*>(destination);
-  ByteSource source(array.encoding, array.content);
+  EncodedBytes source(array.encoding, array.content);
   if (array.block_bytes == 0) {
     unsigned char header[8];
     if (!source.read(header, array.header_bytes) || !source.read(bytes, array.bytes())) return damaged;

@@ -3,11 +3,13 @@
 
 #include "hyperiso/result.hpp"
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <pugixml.hpp>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace hyperiso {
@@ -42,7 +44,21 @@ decltype(auto) visit_vtk_type(VtkType type, Use&& use) {
   return use(double{});
 }
 
+template <class T>
+constexpr VtkType vtk_type_of() {
+  if constexpr (std::is_floating_point_v<T>) {
+    return sizeof(T) == 4 ? VtkType::f32 : VtkType::f64;
+  } else {
+    constexpr VtkType of_size[][2] = {{VtkType::i8, VtkType::u8},
+                                      {VtkType::i16, VtkType::u16},
+                                      {VtkType::i32, VtkType::u32},
+                                      {VtkType::i64, VtkType::u64}};
+    return of_size[std::countr_zero(sizeof(T))][std::is_unsigned_v<T>];
+  }
+}
+
 std::size_t size_of(VtkType type);
+const char* name_of(VtkType type); // "Int8", ..., "Float64"
 
 // One <DataArray> or <Array>, found but not yet decoded. The file has been seen to be able to hold
 // `values`: memory for them is at most some 1030 times the size of the file, the most that zlib compresses.

@@ -1,0 +1,30 @@
+#pragma once
+// The names under which .vtu and .vtp files hold what VTK has no place for.
+
+#include <cstddef>
+#include <string>
+
+namespace hyperiso::vtk_names {
+
+// Point data.
+inline const std::string position_in_r4 = "xyzt"; // the points themselves hold x, y, z
+inline const std::string grid_edge = "grid_edge"; // Mesh::edges
+
+// Field data.
+inline const std::string space_dimension = "space_dimension";
+inline const std::string simplex_dimension = "simplex_dimension";
+inline const std::string active_cells = "active_cells";
+inline const std::string grid_count = "grid_count"; // Mesh::grid_axes: a number or string for each
+inline const std::string grid_first = "grid_first";
+inline const std::string grid_origin = "grid_origin";
+inline const std::string grid_spacing = "grid_spacing";
+inline const std::string grid_names = "grid_names";
+inline const std::string grid_units = "grid_units";
+inline std::string grid_coordinates(std::size_t axis) { // of the axes that have them
+  return "grid_coordinates_" + std::to_string(axis);
+}
+
+// VTK's number for segments, triangles and tetrahedra.
+constexpr int cell_type(int K) { return K == 1 ? 3 : K == 2 ? 5 : 10; }
+
+} // namespace hyperiso::vtk_names

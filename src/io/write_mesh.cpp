@@ -1,0 +1,121 @@
+#include "core/text.hpp"
+#include "io/mesh_formats.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <new>
+#include <set>
+
+namespace hyperiso {
+namespace {
+
+struct Format {
+  const char* name;
+  const char* holds;
+  int simplex_dimension[2]; // smallest and largest
+  int largest_dimension;
+  std::uint64_t largest_count; // of vertices, and of simplices
+  std::function<void(AtomicFile&, const Mesh&, const WriteMeshOptions&)> write;
+};
+
+template <void (*write)(AtomicFile&, const Mesh&)>
+void without_options(AtomicFile& file, const Mesh& mesh, const WriteMeshOptions&) {
+  write(file, mesh);
+}
+
+constexpr std::uint64_t any_count = UINT64_MAX;
+constexpr std::uint64_t int_count = std::numeric_limits<std::int32_t>::max();
+
+const Format formats[] = {
+    {"vtu", "segments, triangles and tetrahedra in up to 4 dimensions", {1, 3}, 4, any_count, write_vtu},
+    {"vtp", "segments and triangles in 2 or 3 dimensions", {1, 2}, 3, any_count, write_vtp},
+    {"obj", "segments and triangles in 2 or 3 dimensions", {1, 2}, 3, any_count, without_options<write_obj>},
+    {"off", "triangles in 2 or 3 dimensions", {2, 2}, 3, any_count, without_options<write_off>},
+    {"ply", "triangles in 2 or 3 dimensions", {2, 2}, 3, int_count, without_options<write_ply>},
+    {"stl", "triangles in 2 or 3 dimensions", {2, 2}, 3, UINT32_MAX, without_options<write_stl>},
+};
+
+std::string format_name(const std::filesystem::path& path, const WriteMeshOptions& options) {
+  std::string name = options.format.empty() ? path.extension().string() : options.format;
+  if (name.starts_with('.')) name.erase(0, 1);
+  for (char& c : name)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return name;
+}
+
+bool fits(const Format& format, const Mesh& mesh) {
+  return mesh.simplex_dimension >= format.simplex_dimension[0] &&
+         mesh.simplex_dimension <= format.simplex_dimension[1] && mesh.dimension >= 2 &&
+         mesh.dimension <= format.largest_dimension && mesh.vertex_count() <= format.largest_count &&
+         mesh.simplex_count() <= format.largest_count;
+}
+
+std::string description(const Mesh& mesh) {
+  return text(mesh.simplex_count(), " ", mesh.simplex_dimension, "-simplices on ", mesh.vertex_count(),
+              " vertices in ", mesh.dimension, " dimensions");
+}
+
+Error does_not_fit(const Format& format, const Mesh& mesh, const std::filesystem::path& path) {
+  std::string others;
+  for (const Format& other : formats)
+    if (fits(other, mesh)) others += text(others.empty() ? "" : ", ", other.name);
+  const std::string advice = mesh.simplex_dimension >= 4
+                                 ? "pentatopes are no cells of any format here; slice the mesh first"
+                                 : "formats that hold it: " + (others.empty() ? "none" : others);
+  return Error{Code::file_unsupported, text(path.string(), ": ", format.name, " holds ", format.holds,
+                                            ", not ", description(mesh), "; ", advice)};
+}
+
+// A file that contradicts itself could crash the program that reads it.
+Status check(const Mesh& mesh, const WriteMeshOptions& options) {
+  const auto wrong = [](const auto&... pieces) { return Error{Code::invalid_argument, text(pieces...)}; };
+  const std::size_t vertices = mesh.vertex_count(), simplices = mesh.simplex_count();
+  if (mesh.positions.size() != vertices * static_cast<std::size_t>(mesh.dimension) ||
+      mesh.simplices.size() != simplices * static_cast<std::size_t>(mesh.simplex_dimension + 1))
+    return wrong("the mesh ends within a vertex or a simplex");
+  const bool in_range = mesh.simplices.visit([&](auto corners) {
+    return std::all_of(corners.begin(), corners.end(), [&](auto vertex) { return vertex < vertices; });
+  });
+  if (!in_range)
+    return wrong("a simplex uses a vertex that the mesh of ", vertices, " vertices does not have");
+  if (!mesh.edges.empty() && mesh.edges.size() != vertices)
+    return wrong("the mesh has ", mesh.edges.size(), " grid edges for ", vertices, " vertices");
+  std::set<std::pair<Attribute::Location, std::string>> names;
+  for (const std::string& name : names_of_point_data(mesh, options))
+    names.emplace(Attribute::Location::vertex, name);
+  for (const Attribute& attribute : mesh.attributes) {
+    const std::size_t count = attribute.location == Attribute::Location::vertex ? vertices : simplices;
+    const std::size_t values = std::visit([](const auto& v) { return v.size(); }, attribute.values);
+    if (attribute.components < 1 || values != count * static_cast<std::size_t>(attribute.components))
+      return wrong("attribute \"", attribute.name, "\" has ", values, " values where ", count, " times ",
+                   attribute.components, " are due");
+    if (!names.emplace(attribute.location, attribute.name).second)
+      return wrong("the name of attribute \"", attribute.name, "\" is taken");
+  }
+  return {};
+}
+
+} // namespace
+
+Status write_mesh(const Mesh& mesh, const std::filesystem::path& path, const WriteMeshOptions& options) {
+  try {
+    const std::string name = format_name(path, options);
+    const auto* format = std::find_if(std::begin(formats), std::end(formats),
+                                      [&](const Format& candidate) { return candidate.name == name; });
+    if (format == std::end(formats))
+      return Error{Code::file_unsupported,
+                   text(path.string(), ": \"", name, "\" is no format for meshes here; ",
+                        "there are vtu, vtp, ply, stl, obj and off")};
+    if (!fits(*format, mesh)) return does_not_fit(*format, mesh, path);
+    if (const auto checked = check(mesh, options); !checked) return checked;
+    auto file = AtomicFile::create(path);
+    if (!file) return file.error();
+    format->write(*file, mesh, options);
+    return file->commit();
+  } catch (const std::bad_alloc&) {
+    return Error{Code::out_of_memory, text("no memory to write ", path.string())};
+  }
+}
+
+} // namespace hyperiso
