@@ -20,20 +20,24 @@ struct ReadOptions {
   bool big_endian = false;        ///< raw files
   std::int64_t skip_bytes = 0;    ///< raw files: header to leave out
   std::string variable;  ///< the array to read where a file has several; empty: the only or first one
-  std::string time_axis; ///< name or number of the axis that is time; empty: as the file says
-  std::uint64_t memory_limit = UINT64_MAX; ///< bytes of samples that may be held
+  std::string time_axis; ///< name or number (in the file) of the axis that is time; empty: as the file says
+  std::uint64_t memory_limit = UINT64_MAX; ///< bytes of samples that may be held (mapped ones are not)
 };
 
 /// A field in one or several files, open but not yet read: its description is known, its samples are read on
-/// request, step by step where the format allows.
+/// request, step by step where the format allows. Not thread-safe: one thread at a time.
 class FieldReader : public StepSource {
  public:
   const FieldInfo& info() const override { return info_; }
 
   /// The samples [begin, end) along the last axis (steps, if it is time). Raw samples in a plain file come
-  /// memory-mapped, others are read; only the files and parts needed for those steps are touched where the
-  /// format allows it.
-  /// Errors: file_unreadable, file_malformed (truncated, bad compression), out_of_memory.
+  /// memory-mapped (the file must not be made shorter while they are in use), others are read; only the files
+  /// and parts needed for those steps are touched where the format allows it. Of compressed samples all
+  /// before `end` are decoded, but going on from where the last call ended, or one step before, costs no more
+  /// than the new steps.
+  ///
+  /// Errors: file_unreadable, file_malformed (truncated, bad compression), out_of_memory; invalid_argument
+  /// unless 0 <= begin <= end <= the number of steps.
   Result<Field> read(std::int64_t begin, std::int64_t end) override = 0;
   Result<Field> read() { return read(0, info_.axes.back().count); }
 
@@ -41,16 +45,55 @@ class FieldReader : public StepSource {
   FieldInfo info_;
 };
 
-/// Opens a field. One path: .nrrd, .nhdr, .vti, .npy, .raw/.bin (with `dims` and `type`), .pvd, .series.
+/// Opens a field. One path, by its suffix:
+///
+/// | suffix | what is read |
+/// | .nrrd .nhdr | one data file or several; raw, gzip, bzip2, text, hex; either byte order |
+/// | .vti | inline or appended, zlib or uncompressed, one piece or several |
+/// | .npy | versions 1 to 3, C or Fortran order, either byte order; booleans as u8 |
+/// | .raw .bin, and others with `dims` | samples alone, as `dims` and `type` say; the size must match |
+/// | .pvd .series | ParaView's series: one file of the above for each step, with its time |
+///
 /// Several paths: one step each, in the order given, stacked along a new last axis t (with the times of the
-/// files where they have them, else 0, 1, 2, ...). Errors: file_not_found, file_unreadable, file_malformed,
-/// file_unsupported, out_of_memory; invalid_argument for options that do not fit the format.
+/// files where they have them, else 0, 1, 2, ...). All steps must be of the same type and on the same grid.
+///
+/// Axes without a name are called t (time) and x, y, z, or x0, x1, ... where there are more than three. Time
+/// is moved to the end by its stride, whatever its place in the file. Where a file does not say which axis is
+/// time, the last of four or more is.
+///
+/// NRRD: time is the axis of kind `time`, else of kind `list` (3D Slicer's sequences), else the one labelled
+/// t or time. Axis mins are the position of sample 0, unless `centerings` says cell. Space directions along
+/// the axes of the space become origins and spacings, others FieldInfo::world, unless the space has more
+/// dimensions than the field has axes in it: then only the spacings are kept.
+///
+/// VTI: the array `variable`, else the active scalars, else the first with one component; of points, else of
+/// cells, whose centres are the samples then. Axes of one sample are left out: a flat image has two axes.
+///
+/// A file can ask for no more memory than its size accounts for. Errors: file_not_found, file_unreadable,
+/// file_malformed, file_unsupported (among others 64-bit integers and vectors), out_of_memory;
+/// invalid_argument for options that do not fit the format.
 Result<std::unique_ptr<FieldReader>> open_field(const std::vector<std::filesystem::path>& paths,
                                                 const ReadOptions& options = {});
 
-/// Writes a field: .nrrd (raw, or gzip where `compress`), .npy, .raw, .vti (3 axes; with time, a series: a
-/// .pvd and one .vti per step beside it).
-Status write_field(const Field& field, const std::filesystem::path& path, bool compress = false);
+/// How to write a field.
+struct WriteFieldOptions {
+  std::string format;    ///< "nrrd", "npy", "raw", "vti", "pvd"; empty: by the suffix of the path
+  bool compress = false; ///< nrrd: gzip; vti always is; npy and raw cannot be
+};
+
+/// Writes a field, whole or not at all.
+///
+/// | format | what is kept beside the samples |
+/// | nrrd | all of FieldInfo; uneven axes by keys of our own (`hyperiso axis coordinates t:=...`) |
+/// | vti, pvd | the name, evenly spaced axes and the times |
+/// | npy, raw | dims and type; only the samples |
+///
+/// vti takes fields of up to three axes beside time. With time, it becomes a series: PATH_0000.vti, ... and a
+/// .pvd beside them that names them, also if the path ends in .vti. Axes whose coordinates fall are written
+/// backwards there. An affine map keeps the positions in the world, not the axis coordinates.
+/// Errors: file_unwritable; file_unsupported where the format cannot hold the field; invalid_argument.
+Status write_field(const Field& field, const std::filesystem::path& path,
+                   const WriteFieldOptions& options = {});
 
 /// How to write a mesh.
 struct WriteMeshOptions {

@@ -208,9 +208,14 @@ void AtomicFile::close_and_sync() {
   if (!failed() && closed != 0 && errno != EINTR) error_number_ = errno;
 }
 
-Status AtomicFile::commit() {
+void AtomicFile::close() {
   flush();
-  close_and_sync();
+  if (descriptor_ >= 0) close_and_sync();
+  buffer_ = {};
+}
+
+Status AtomicFile::commit() {
+  close();
   if (!failed() && unfinished_) {
     if (::rename(temporary_.c_str(), replaces_.c_str()) == 0)
       forget_unfinished(std::exchange(unfinished_, nullptr));

@@ -1,7 +1,10 @@
 #pragma once
-// The formats of fields, one file each. Errors as open_field says.
+// The formats of fields, a file for reading and one for writing each.
+//
+// Readers: errors as open_field says.
 
 #include "hyperiso/io.hpp"
+#include "io/atomic_file.hpp"
 
 #include <optional>
 
@@ -26,5 +29,16 @@ struct OpenStep {
 Result<OpenStep> open_vti_step(const std::filesystem::path& path, const ReadOptions& options);
 // Any format of a single file.
 Result<OpenStep> open_step(const std::filesystem::path& path, const ReadOptions& options);
+
+// Writers: what fails goes to the AtomicFile. Fields have samples and, where there is a check, have passed
+// it: it says whether the format can hold such a field (file_unsupported).
+Status check_fits_nrrd(const FieldInfo& info, const std::filesystem::path& path);
+void write_nrrd(AtomicFile& file, const Field& field, bool compress);
+void write_npy(AtomicFile& file, const Field& field);
+void write_raw(AtomicFile& file, const Field& field);
+Status check_fits_vti(const FieldInfo& info, const std::filesystem::path& path);
+void write_vti(AtomicFile& file, const Field& field); // no time axis
+// The steps as .vti beside `path`, then `path` with the suffix .pvd, which names them.
+Status write_vti_series(const Field& field, const std::filesystem::path& path);
 
 } // namespace hyperiso

@@ -3,6 +3,7 @@
 #include "core/determinant.hpp"
 #include "core/text.hpp"
 #include "io/nrrd_header.hpp"
+#include "io/nrrd_keys.hpp"
 #include "io/parse.hpp"
 
 #include <algorithm>
@@ -13,6 +14,12 @@ namespace {
 
 using Vector = std::vector<double>;
 
+// What nrrd_crop_key holds.
+struct CroppedFrom {
+  double origin;
+  std::int64_t first;
+};
+
 // The header's words about one axis.
 struct AxisFields {
   std::int64_t size = 0;
@@ -22,6 +29,7 @@ struct AxisFields {
   bool cell_centred = false;
   std::optional<Vector> direction; // `space_dimension` numbers
   std::optional<std::vector<double>> coordinates;
+  std::optional<CroppedFrom> cropped_from;
 };
 
 struct Space {
@@ -57,7 +65,7 @@ class AxesParser {
     if (status) status = parse_strings("labels", &AxisFields::label);
     if (status) status = parse_strings("units", &AxisFields::unit);
     if (status) status = parse_space();
-    if (status) status = parse_coordinates();
+    if (status) status = parse_keys();
     return status;
   }
 
@@ -224,20 +232,35 @@ class AxesParser {
     return vector;
   }
 
-  // Uneven positions: our own, which must be right, and those of 3D Slicer's sequences, which may be words.
-  Status parse_coordinates() {
-    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-      const auto found = header_.key_values.find(text("hyperiso axis ", axis, " coordinates"));
-      const auto slicer = header_.key_values.find(text("axis ", axis, " index values"));
-      const auto size = static_cast<std::size_t>(axes[axis].size);
-      if (found != header_.key_values.end()) {
-        axes[axis].coordinates = numbers_from<double>(found->second);
-        if (!axes[axis].coordinates || axes[axis].coordinates->size() != size)
-          return malformed(text("\"", found->first, ":=\" is not one number for each of ", size, " samples"));
-      } else if (slicer != header_.key_values.end()) {
-        auto times = numbers_from<double>(slicer->second);
-        if (Axis scratch; times && times->size() == size && set_coordinates(scratch, *times))
-          axes[axis].coordinates = std::move(times);
+  const std::string* value_of(const std::string& key) const {
+    const auto found = header_.key_values.find(key);
+    return found == header_.key_values.end() ? nullptr : &found->second;
+  }
+
+  // What no field of the format can tell: our own keys, and those of 3D Slicer's sequences, which may be
+  // words.
+  Status parse_keys() {
+    for (std::size_t number = 0; number < axes.size(); ++number) {
+      AxisFields& axis = axes[number];
+      const auto size = static_cast<std::size_t>(axis.size);
+      const std::string key = nrrd_coordinates_key(axis.label);
+      if (const std::string* words = value_of(key)) {
+        axis.coordinates = numbers_from<double>(*words);
+        if (!axis.coordinates || axis.coordinates->size() != size)
+          return malformed(text("\"", key, ":=\" is not one number for each of ", size, " samples"));
+      } else if (const std::string* times = value_of(text("axis ", number, " index values"))) {
+        auto coordinates = numbers_from<double>(*times);
+        if (Axis scratch;
+            coordinates && coordinates->size() == size && set_coordinates(scratch, *coordinates))
+          axis.coordinates = std::move(coordinates);
+      }
+      if (const std::string* words = value_of(nrrd_crop_key(axis.label))) {
+        const auto parts = split(*words);
+        const auto origin = parts.size() == 2 ? number_from<double>(parts[0]) : std::nullopt;
+        const auto first = parts.size() == 2 ? number_from<std::int64_t>(parts[1]) : std::nullopt;
+        if (!origin || !first)
+          return malformed(text("\"", nrrd_crop_key(axis.label), ":=\" is not two numbers"));
+        axis.cropped_from = CroppedFrom{*origin, *first};
       }
     }
     return {};
@@ -307,6 +330,12 @@ Status place_along_axis(const AxisFields& fields, std::size_t number, const Axes
     axis.origin = fields.min + margin;
   else if (has_max)
     axis.origin = fields.max - margin - static_cast<double>(fields.size - 1) * axis.spacing;
+  // A program that moves the samples may not know the key: then the position of sample 0 belies it.
+  if (const auto& whole = fields.cropped_from;
+      whole && whole->origin + static_cast<double>(whole->first) * axis.spacing == axis.origin) {
+    axis.origin = whole->origin;
+    axis.first = whole->first;
+  }
   return {};
 }
 

@@ -254,14 +254,16 @@ Result<NrrdHeader> parse_nrrd_header(std::string_view file, const std::filesyste
     const std::size_t colon = line.find(':');
     if (colon == std::string_view::npos)
       return malformed(path, text("the header line ", in_quotes(line), " is neither a field nor a comment"));
-    const bool is_field = colon + 1 < line.size() && line[colon + 1] == ' ';
-    if (const std::size_t separator = line.find(":="); !is_field && separator != std::string_view::npos) {
+    std::string_view name;
+    if (!line.substr(colon).starts_with(":="))
+      name = usual_spelling(lower_case(trimmed(line.substr(0, colon))));
+    if (name.empty()) { // keys may have colons in them
+      const std::size_t separator = line.find(":=");
+      if (separator == std::string_view::npos)
+        return malformed(path, text("the header line ", in_quotes(line), " is no field of NRRD"));
       header.key_values[unescaped(line.substr(0, separator))] = unescaped(line.substr(separator + 2));
       continue;
     }
-    const std::string_view name = usual_spelling(lower_case(trimmed(line.substr(0, colon))));
-    if (name.empty())
-      return malformed(path, text("the header line ", in_quotes(line), " is no field of NRRD"));
     const std::string_view value = trimmed(line.substr(colon + 1));
     if (!header.fields.emplace(name, value).second)
       return malformed(path, text("the header has two lines \"", name, ":\""));

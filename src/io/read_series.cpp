@@ -29,6 +29,7 @@ std::string difference(const FieldInfo& step, const FieldInfo& first) {
     return text("its samples are ", name_of(step.type), ", not ", name_of(first.type));
   if (step.dimension() != first.dimension())
     return text("it has ", step.dimension(), " axes, not ", first.dimension());
+  if (step.has_time != first.has_time) return text("it has ", step.has_time ? "a" : "no", " time axis");
   for (std::size_t k = 0; k < first.axes.size(); ++k) {
     const Axis &a = step.axes[k], &b = first.axes[k];
     if (a.count != b.count) return text("axis ", b.name, " has ", a.count, " samples, not ", b.count);

@@ -232,7 +232,7 @@ Result<std::unique_ptr<FieldReader>> read_stored(StoredField stored, std::unique
 Status check_range(const FieldInfo& info, std::int64_t begin, std::int64_t end,
                    const std::filesystem::path& path) {
   const Axis& axis = info.axes.back();
-  if (0 <= begin && begin < end && end <= axis.count) return {};
+  if (0 <= begin && begin <= end && end <= axis.count) return {};
   return Error{Code::invalid_argument,
                text(path.string(), ": ", begin, ":", end, " is not a range within the ", axis.count,
                     " samples along axis ", axis.name)};

@@ -1,0 +1,85 @@
+// Which format a field is written in, and whether it fits.
+
+#include "core/text.hpp"
+#include "io/formats.hpp"
+#include "io/parse.hpp"
+
+#include <algorithm>
+#include <new>
+
+namespace hyperiso {
+namespace {
+
+enum class FieldFormat { nrrd, npy, raw, vti };
+
+constexpr std::pair<std::string_view, FieldFormat> formats[] = {
+    {"nrrd", FieldFormat::nrrd}, {"npy", FieldFormat::npy}, {"raw", FieldFormat::raw},
+    {"bin", FieldFormat::raw},   {"vti", FieldFormat::vti}, {"pvd", FieldFormat::vti}};
+
+Result<FieldFormat> format_of(const std::filesystem::path& path, const std::string& asked) {
+  std::string name = lower_case(asked.empty() ? path.extension().string() : asked);
+  if (asked.empty() && !name.empty()) name.erase(0, 1);
+  std::string names;
+  for (const auto& [known, format] : formats) {
+    if (name == known) return format;
+    names += text(names.empty() ? "" : ", ", known);
+  }
+  if (!asked.empty())
+    return Error{Code::file_unsupported,
+                 text("fields are not written as ", in_quotes(asked), "; they are as ", names)};
+  return Error{Code::file_unsupported, text(path.string(), ": fields are not written to ",
+                                            name.empty() ? "files without a suffix" : "." + name + " files",
+                                            "; the suffixes are ", names)};
+}
+
+Status check(const Field& field, const std::filesystem::path& path) {
+  const bool has_samples =
+      field.samples && field.strides.size() == field.info.axes.size() && !field.strides.empty() &&
+      std::ranges::all_of(field.info.axes, [](const Axis& axis) { return axis.count > 0; });
+  if (has_samples) return {};
+  return Error{Code::invalid_argument, text(path.string(), ": there are no samples to write")};
+}
+
+Status write_as(FieldFormat format, const Field& field, const std::filesystem::path& path, bool compress) {
+  if (format == FieldFormat::nrrd)
+    if (Status status = check_fits_nrrd(field.info, path); !status) return status;
+  if (format == FieldFormat::vti) {
+    if (Status status = check_fits_vti(field.info, path); !status) return status;
+    if (field.info.has_time) return write_vti_series(field, path);
+  }
+  auto file = AtomicFile::create(path);
+  if (!file) return file.error();
+  switch (format) {
+  case FieldFormat::nrrd:
+    write_nrrd(*file, field, compress);
+    break;
+  case FieldFormat::npy:
+    write_npy(*file, field);
+    break;
+  case FieldFormat::raw:
+    write_raw(*file, field);
+    break;
+  case FieldFormat::vti:
+    write_vti(*file, field);
+    break;
+  }
+  return file->commit();
+}
+
+} // namespace
+
+Status write_field(const Field& field, const std::filesystem::path& path, const WriteFieldOptions& options) {
+  try {
+    const auto format = format_of(path, options.format);
+    if (!format) return format.error();
+    if (Status status = check(field, path); !status) return status;
+    if (options.compress && (*format == FieldFormat::npy || *format == FieldFormat::raw))
+      return Error{Code::invalid_argument,
+                   text(path.string(), ": .npy and .raw files are not compressed; .nrrd can be")};
+    return write_as(*format, field, path, options.compress);
+  } catch (const std::bad_alloc&) {
+    return Error{Code::out_of_memory, text("no memory to write ", path.string())};
+  }
+}
+
+} // namespace hyperiso
