@@ -6,13 +6,16 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace hyperiso {
 
-/// The + and - labels of the 2^D vertices of a D-cube, D <= 4: bit i set iff vertex i is +. Vertex i stands
-/// at coordinate (bit k of i) along axis k.
-using CubeLabels = std::uint32_t;
+/// The + and - labels of the 2^D vertices of a D-cube: bit i set iff vertex i is +. Vertex i stands at
+/// coordinate (bit k of i) along axis k.
+using CubeLabels = std::uint32_t; ///< D <= 5
+template <int D>
+using LabelSet = std::conditional_t<(D <= 5), CubeLabels, std::uint64_t>; ///< D <= 6
 
 /// Number of the cube edge along `axis` whose lower vertex is `lower` (bit `axis` of it is 0).
 template <int D>

@@ -24,6 +24,15 @@ constexpr IntegerVector<N> difference(IntegerVector<N> a, const IntegerVector<N>
   return a;
 }
 
+// How many bits each number below 2^N has set.
+template <std::size_t N>
+constexpr std::array<std::uint8_t, std::size_t{1} << N> bit_counts = [] {
+  std::array<std::uint8_t, std::size_t{1} << N> counts{};
+  for (std::size_t set = 1; set < counts.size(); ++set)
+    counts[set] = static_cast<std::uint8_t>(std::popcount(set));
+  return counts;
+}();
+
 // The vector c with dot(x, c) = det[x; rows] for all x: orthogonal to the rows, 0 iff they are dependent.
 // Expands the minors of the first 1, 2, ... rows, each in terms of the ones before.
 template <std::size_t N>
@@ -31,7 +40,7 @@ constexpr IntegerVector<N> cross_product(const std::array<IntegerVector<N>, N - 
   constexpr unsigned all = (1u << N) - 1;
   std::array<std::int64_t, all + 1> minor{1}; // of the columns in a set and as many rows
   for (unsigned columns = 1; columns < all; ++columns) {
-    const auto& row = rows[static_cast<std::size_t>(std::popcount(columns)) - 1];
+    const auto& row = rows[bit_counts<N>[columns] - 1u];
     bool positive = true; // the last column of the last row
     for (std::size_t k = N; k-- > 0;) {
       if (!(columns >> k & 1)) continue;

@@ -48,7 +48,7 @@ class Placing {
 
   const std::vector<EdgeSimplex<D>>& triangulate() {
     simplices_.push_back({0});
-    boundary_.push_back({{}, 0});
+    boundary_.push_back({{}, 0, {}, 0});
     for (std::size_t point = 1; point < points_.size(); ++point)
       if (raises_rank_[point])
         raise(static_cast<std::uint8_t>(point));
@@ -69,19 +69,22 @@ class Placing {
   struct Face {
     std::array<std::uint8_t, D - 1> points;
     std::uint8_t opposite;
+    IntegerVector<D> away; // within the span of the points placed so far, normal to the face, from `opposite`
+    std::int64_t offset;   // of the face along it
   };
 
   // A point outside the span of the others makes a cone of them all.
   void raise(std::uint8_t point) {
     std::vector<Face> bases;
     for (auto& simplex : simplices_) {
-      Face& base = bases.emplace_back(Face{{}, point});
+      Face& base = bases.emplace_back(Face{{}, point, {}, 0});
       std::copy_n(simplex.begin(), rank_ + 1, base.points.begin());
       simplex[rank_ + 1] = point;
     }
     for (Face& face : boundary_) face.points[rank_] = point;
     boundary_.insert(boundary_.end(), bases.begin(), bases.end());
     ++rank_;
+    for (Face& face : boundary_) find_normal(face);
   }
 
   // A point within the span of the others is joined to the faces that it sees.
@@ -102,6 +105,7 @@ class Placing {
         add_unless_shared(sides, side);
       }
     }
+    for (Face& side : sides) find_normal(side);
     boundary_.erase(first_seen, boundary_.end());
     boundary_.insert(boundary_.end(), sides.begin(), sides.end());
   }
@@ -118,19 +122,20 @@ class Placing {
   }
 
   bool sees(std::size_t point, const Face& face) const {
-    const std::int64_t side = side_of(point, face);
-    return side != 0 && (side > 0) != (side_of(face.opposite, face) > 0);
+    return dot(face.away, points_[point]) > face.offset;
   }
 
-  // Which side of a face a point is on, within the span of the points placed so far. The directions that
-  // later points add complete it to a determinant.
-  std::int64_t side_of(std::size_t point, const Face& face) const {
+  // The directions that later points add complete the span of those placed so far.
+  void find_normal(Face& face) const {
     const IntegerVector<D>& origin = points_[face.points[0]];
-    std::array<IntegerVector<D>, D - 1> sides;
-    for (std::size_t i = 1; i < rank_; ++i) sides[i - 1] = difference(points_[face.points[i]], origin);
-    sides[rank_ - 1] = difference(points_[point], origin);
+    std::array<IntegerVector<D>, D - 1> sides{outward_};
+    for (std::size_t i = 1; i < rank_; ++i) sides[i] = difference(points_[face.points[i]], origin);
     for (std::size_t i = rank_; i < D - 1; ++i) sides[i] = space_.direction(i);
-    return determinant(outward_, sides);
+    face.away = cross_product<D>(sides);
+    face.offset = dot(face.away, origin);
+    if (dot(face.away, points_[face.opposite]) < face.offset) return;
+    face.away = difference({}, face.away);
+    face.offset = -face.offset;
   }
 
   IntegerVector<D> outward_;
@@ -157,6 +162,7 @@ std::array<std::uint8_t, cube_edge_count<D>> edges_in_placing_order() {
 template <int D>
 std::vector<EdgeSimplex<D>> triangulate_facet(const IntegerVector<D>& outward,
                                               std::span<const std::uint8_t> edges) {
+  if (edges.size() < D) return {};
   Placing<D> placing(outward, edges);
   if (!placing.spans_hyperplane()) return {};
   std::vector<EdgeSimplex<D>> simplices = placing.triangulate();
@@ -167,14 +173,14 @@ std::vector<EdgeSimplex<D>> triangulate_facet(const IntegerVector<D>& outward,
   return simplices;
 }
 
-template std::array<std::uint8_t, 4> edges_in_placing_order<2>();
-template std::array<std::uint8_t, 12> edges_in_placing_order<3>();
-template std::array<std::uint8_t, 32> edges_in_placing_order<4>();
-template std::vector<EdgeSimplex<2>> triangulate_facet<2>(const IntegerVector<2>&,
-                                                          std::span<const std::uint8_t>);
-template std::vector<EdgeSimplex<3>> triangulate_facet<3>(const IntegerVector<3>&,
-                                                          std::span<const std::uint8_t>);
-template std::vector<EdgeSimplex<4>> triangulate_facet<4>(const IntegerVector<4>&,
-                                                          std::span<const std::uint8_t>);
+#define HYPERISO_INSTANTIATE_FACET(D)                                                                        \
+  template std::array<std::uint8_t, cube_edge_count<D>> edges_in_placing_order<D>();                         \
+  template std::vector<EdgeSimplex<D>> triangulate_facet<D>(const IntegerVector<D>&,                         \
+                                                            std::span<const std::uint8_t>);
+HYPERISO_INSTANTIATE_FACET(2)
+HYPERISO_INSTANTIATE_FACET(3)
+HYPERISO_INSTANTIATE_FACET(4)
+HYPERISO_INSTANTIATE_FACET(5)
+HYPERISO_INSTANTIATE_FACET(6)
 
 } // namespace hyperiso

@@ -1,6 +1,7 @@
 #include "table/verify.hpp"
 
 #include "table/cube.hpp"
+#include "table/cube_facet.hpp"
 #include "table/hull_facet.hpp"
 
 #include <algorithm>
@@ -80,45 +81,18 @@ Faces<D> oriented_faces(const std::vector<EdgeSimplex<D>>& simplices) {
   return faces;
 }
 
-// A facet of the cube: where coordinate `axis` is `side`.
+// The edges of each facet of the cube.
 template <int D>
-struct CubeFacet {
-  int axis, side;
-  EdgeSet edges;
-
-  // The number of an edge on the (D-1)-cube of the other axes.
-  std::uint8_t edge_within(int edge) const {
-    const CubeEdge ends = cube_edge_ends<D>(edge);
-    const int lower = (ends.lower >> (axis + 1) << axis) | (ends.lower & ((1 << axis) - 1));
-    return static_cast<std::uint8_t>(cube_edge<D - 1>(lower, ends.axis - (ends.axis > axis)));
-  }
-  CubeLabels labels_within(CubeLabels labels) const {
-    CubeLabels within = 0;
-    for (int vertex = 0; vertex < 1 << (D - 1); ++vertex) {
-      const int outer = (vertex >> axis << (axis + 1)) | side << axis | (vertex & ((1 << axis) - 1));
-      within |= (labels >> outer & 1) << vertex;
-    }
-    return within;
-  }
-  // W+ lies on the inner side of the surface and of the cube facet, so the surface's boundary runs against
-  // the boundary of the part of the facet in W+; and the other axes, in their order, are oriented as the
-  // boundary of the cube or not.
-  bool trace_keeps_orientation() const { return (axis + side) % 2 == 0; }
-};
-
-template <int D>
-constexpr std::array<CubeFacet<D>, 2 * D> cube_facets = [] {
-  std::array<CubeFacet<D>, 2 * D> facets{};
-  for (int i = 0; i < 2 * D; ++i) {
-    CubeFacet<D>& facet = facets[static_cast<std::size_t>(i)];
-    facet = {i / 2, i % 2, 0};
-    for (int edge = 0; edge < cube_edge_count<D>; ++edge) {
-      const CubeEdge ends = cube_edge_ends<D>(edge);
-      if (ends.axis != facet.axis && (ends.lower >> facet.axis & 1) == facet.side) facet.edges |= bit(edge);
-    }
-  }
-  return facets;
-}();
+const std::array<EdgeSet, 2 * D>& edges_of_facets() {
+  static const auto edges = [] {
+    std::array<EdgeSet, 2 * D> sets{};
+    for (std::size_t facet = 0; facet < sets.size(); ++facet)
+      for (int edge = 0; edge < cube_edge_count<D>; ++edge)
+        if (cube_facets<D>[facet].contains(edge)) sets[facet] |= bit(edge);
+    return sets;
+  }();
+  return edges;
+}
 
 // The entry of the (D-1)-table as oriented faces; on an edge, a point that is + if the edge runs from + to -.
 template <int D>
@@ -135,10 +109,11 @@ Faces<D> lower_entry(CubeLabels labels) {
 
 template <int D>
 void verify_restriction(CubeLabels labels, const Faces<D>& faces, TableVerification& counts) {
-  for (const CubeFacet<D>& facet : cube_facets<D>) {
+  for (std::size_t i = 0; i < cube_facets<D>.size(); ++i) {
+    const CubeFacet<D>& facet = cube_facets<D>[i];
     Faces<D> trace, expected = lower_entry<D>(facet.labels_within(labels));
     for (OrientedFace<D - 1> face : faces) {
-      if (edge_set(face.vertices) & ~facet.edges) continue;
+      if (edge_set(face.vertices) & ~edges_of_facets<D>()[i]) continue;
       for (std::uint8_t& vertex : face.vertices) vertex = facet.edge_within(vertex);
       trace.emplace_back(face.vertices, face.positive == facet.trace_keeps_orientation());
     }
@@ -154,8 +129,7 @@ void verify_interior_faces(const Faces<D>& faces, TableVerification& counts) {
   for (std::size_t begin = 0, end; begin < faces.size(); begin = end) {
     for (end = begin + 1; end < faces.size() && faces[end].vertices == faces[begin].vertices;) ++end;
     const EdgeSet face = edge_set(faces[begin].vertices);
-    if (std::ranges::any_of(cube_facets<D>,
-                            [&](const CubeFacet<D>& facet) { return (face & ~facet.edges) == 0; }))
+    if (std::ranges::any_of(edges_of_facets<D>(), [&](EdgeSet edges) { return (face & ~edges) == 0; }))
       continue;
     ++counts.interior_faces;
     counts.manifold_failures += end - begin != 2 || faces[begin].positive == faces[begin + 1].positive;
