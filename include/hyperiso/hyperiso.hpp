@@ -16,3 +16,4 @@
 #include "hyperiso/statistics.hpp"
 #include "hyperiso/step_source.hpp"
 #include "hyperiso/table.hpp"
+#include "hyperiso/track.hpp"

@@ -14,6 +14,10 @@ class UnionFind {
     std::iota(parent_.begin(), parent_.end(), std::uint64_t{0});
   }
 
+  std::uint64_t add() {
+    parent_.push_back(parent_.size());
+    return parent_.back();
+  }
   std::uint64_t find(std::uint64_t element) {
     while (parent_[element] != element) element = parent_[element] = parent_[parent_[element]];
     return element;

@@ -1,0 +1,116 @@
+#pragma once
+/// \file
+/// Components of an isosurface through time: when each is born, dies, merges, splits, and where.
+
+#include "hyperiso/extract.hpp"
+#include "hyperiso/step_source.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hyperiso {
+
+/// What happens to components at one moment in one connected piece of the surface (docs/tracking.md).
+enum class EventType {
+  birth,      ///< nothing before, one component after
+  death,      ///< one before, nothing after
+  merge,      ///< several before, one after
+  split,      ///< one before, several after
+  compound,   ///< any other change of their number at one instant, nothing into two included
+  genus,      ///< one before and after; a handle or a hole more or less
+  enter,      ///< a birth on a wall of the domain
+  exit,       ///< a death on a wall of the domain
+  touch,      ///< one before and after; a wall of the domain begins or ends to cut it
+  open_start, ///< it is there at the first step
+  open_end,   ///< it is there at the last step
+};
+const char* name_of(EventType type);
+
+/// A node of the Reeb graph of time. Arcs and tracks are numbers in TrackingGraph.
+struct TrackingEvent {
+  EventType type{};
+  double time = 0;
+  std::vector<double> position; ///< on the axes of space
+  std::vector<std::int64_t> arcs_in, arcs_out;
+  std::vector<std::int64_t> tracks_in, tracks_out; ///< at a merge the surviving track stands in both
+  std::int64_t delta_euler = 0; ///< change of the slice's Euler characteristic; 0 for open_start and open_end
+};
+
+/// A component between two events: it exists from the one to the other, and its topology does not change.
+struct TrackingArc {
+  std::int64_t start_event = -1, end_event = -1;
+  std::int64_t track = -1; ///< of its first part, where weak links cut it
+};
+
+/// A component at a step: one row of features.csv.
+struct Feature {
+  std::int64_t step = 0;
+  double time = 0;
+  std::int64_t track = -1;
+  std::int64_t arc = -1;   ///< that passes the step, or -1:
+  std::int64_t event = -1; ///< the event at the step that it is part of, or -1
+
+  double volume = 0;      ///< enclosed, or inside it where walls cut it open: of the piecewise linear surface
+  double cell_volume = 0; ///< the same as paper 003 counts it: cells by the share of their corners inside
+  double surface_area = 0;
+  double mass = 0;                 ///< sum of the samples inside, each by its share of the cells
+  double minimum = 0, maximum = 0; ///< of the samples inside
+  std::vector<double> centroid;    ///< of the samples inside, each by its share of the cells
+  std::vector<double> low, high;   ///< bounding box of the surface
+  std::int64_t euler_characteristic = 0;
+  std::int64_t wall_curves = 0; ///< boundary curves of a surface in 3D
+  std::int64_t cells = 0;       ///< grid cells that the surface passes through
+  bool on_wall = false;
+
+  /// (2 - wall_curves - euler_characteristic) / 2: handles, where it is one closed or cut surface in 3D.
+  double genus() const { return 0.5 * static_cast<double>(2 - wall_curves - euler_characteristic); }
+};
+
+/// The same component, or what became of it, one step later.
+struct FeatureLink {
+  std::int64_t from = -1, to = -1; ///< features at consecutive steps
+  double overlap = 0;              ///< V(both) / min(V(from), V(to)) (paper 003 section 3.3)
+  bool weak = false;               ///< at or below the threshold: cut in the tracks
+};
+
+/// A component followed through time under one name.
+struct Track {
+  double start_time = 0, end_time = 0;
+  std::string start_type, end_type; ///< of its first and last event; "weak" where a weak link was cut
+  std::vector<std::int64_t> parents, children; ///< tracks it split from or merged from; into which it went
+  std::int64_t steps = 0;
+  double max_volume = 0;
+  std::int64_t family = -1; ///< smallest number of a track that events connect it with
+  bool clipped = false;     ///< touched a wall of the domain
+};
+
+/// The Reeb graph of time on the surface, in order of time; what is measured at steps; tracks through it.
+struct TrackingGraph {
+  std::vector<Axis> axes; ///< of the field, time last
+  std::int64_t steps = 0;
+  double isovalue = 0;
+  std::vector<TrackingEvent> events;
+  std::vector<TrackingArc> arcs;
+  std::vector<Feature> features; ///< by step
+  std::vector<FeatureLink> links;
+  std::vector<Track> tracks;
+};
+
+struct TrackOptions {
+  ExtractOptions extraction = {}; ///< method, inside, memory_limit and progress count
+  bool measure_features = true;   ///< else features and links stay empty, and identity goes by age
+  std::optional<double> overlap_threshold = {}; ///< links at or below it are weak; none: no link is
+};
+
+/// Tracks the components of the isosurface of `source` through the time that is its last axis, two steps in
+/// memory at a time (D = 3 and 4: 2D and 3D through time). Between steps the field is linear in time along
+/// each edge, and the events are those of the isosurface in space and time that `extract` makes: exact, ties
+/// included, found without any tolerance.
+///
+/// The graph does not depend on the number of threads. Errors: those of `extract` and of the source;
+/// invalid_argument for fewer than two steps or a time axis that does not increase.
+Result<TrackingGraph> track(StepSource& source, double isovalue, const TrackOptions& options = {});
+
+} // namespace hyperiso

@@ -1,0 +1,306 @@
+#pragma once
+// A step, where two slabs meet: what its connected pieces are, and what happens at them.
+
+#include "track/sweep.hpp"
+
+namespace hyperiso::track_detail {
+
+// The components of the closed level set of a step: all that M has at that time, from the slab that ends
+// there (`lower`) and the one that begins there (`upper`); one of them is missing at the first and last step.
+template <int C>
+class Level {
+ public:
+  Level(Sweep<C>* lower, Sweep<C>* upper)
+      : lower_(lower), upper_(upper), vertex_count_(number_vertices()), united_(vertex_count_) {
+    unite_across_slabs();
+    if (lower_) unite_in(*lower_, 1.0, lower_places_);
+    if (upper_) unite_in(*upper_, 0.0, upper_places_);
+    number_components();
+    if (lower_) strands_in_ = strands_of(*lower_, 1.0, lower_places_);
+    if (upper_) strands_out_ = strands_of(*upper_, 0.0, upper_places_);
+  }
+
+  // What a component became: an arc that passes, or an event; neither where no track is.
+  struct Outcome {
+    std::int64_t arc = -1, event = -1;
+  };
+
+  // Decides every component and gives the strands of the upper slab their arcs.
+  void resolve(double time, GraphBuilder& graph) {
+    for (std::size_t component = 0; component < outcomes_.size(); ++component)
+      outcomes_[component] = resolve(component, time, graph);
+  }
+
+  const std::vector<Outcome>& outcomes() const { return outcomes_; }
+
+  // The arcs that end at a component, or pass, as they were before it was decided; and those that leave it.
+  std::vector<std::int64_t> arcs_in(std::size_t component) const {
+    std::vector<std::int64_t> arcs;
+    if (lower_)
+      for (const std::uint64_t strand : strands_in_[component]) arcs.push_back(lower_->arc_of(strand));
+    std::ranges::sort(arcs);
+    return arcs;
+  }
+  std::vector<std::int64_t> arcs_out(std::size_t component) const {
+    std::vector<std::int64_t> arcs;
+    if (upper_)
+      for (const std::uint64_t strand : strands_out_[component]) arcs.push_back(upper_->arc_of(strand));
+    return arcs;
+  }
+
+  // The component of the vertex on an edge within this step (numbered as within a lower step), if M has it.
+  std::optional<std::size_t> component_of(GridEdge edge) const {
+    if (upper_) {
+      if (const auto vertex = find(upper_->slab, edge)) return component_[upper_places_[*vertex]];
+    }
+    if (lower_) {
+      if (const auto vertex = find(lower_->slab, edge + lower_->slab.step_offset))
+        return component_[lower_places_[*vertex]];
+    }
+    return std::nullopt;
+  }
+
+ private:
+  static constexpr std::uint32_t none = UINT32_MAX;
+
+  // Gives the vertices at this step places 0, 1, ... and says how many.
+  std::size_t number_vertices() {
+    std::uint32_t count = 0;
+    const auto number = [&](const Sweep<C>& sweep, double time, std::vector<std::uint32_t>& places) {
+      places.assign(sweep.slab.times.size(), none);
+      for (Vertex vertex = 0; vertex < places.size(); ++vertex)
+        if (sweep.slab.times[vertex] == time) places[vertex] = count++;
+    };
+    if (upper_) number(*upper_, 0.0, upper_places_);
+    if (lower_) number(*lower_, 1.0, lower_places_);
+    return count;
+  }
+
+  static std::optional<Vertex> find(const Slab<C>& slab, GridEdge edge) {
+    const auto place = std::ranges::lower_bound(slab.edges, edge);
+    if (place == slab.edges.end() || *place != edge) return std::nullopt;
+    return static_cast<Vertex>(place - slab.edges.begin());
+  }
+
+  // A vertex within the step is in both slabs, unless cells without data are on one side of it.
+  void unite_across_slabs() {
+    paired_.assign(vertex_count_, false);
+    if (!lower_ || !upper_) return;
+    const Slab<C>&below = lower_->slab, &above = upper_->slab;
+    Vertex other = 0;
+    for (Vertex vertex = 0; vertex < below.edges.size(); ++vertex) {
+      if (lower_places_[vertex] == none || !below.in_step(vertex)) continue;
+      const GridEdge edge = below.edges[vertex] - below.step_offset;
+      while (other < above.edges.size() && above.edges[other] < edge) ++other;
+      if (other == above.edges.size() || above.edges[other] != edge) continue;
+      united_.unite(lower_places_[vertex], upper_places_[other]);
+      paired_[lower_places_[vertex]] = paired_[upper_places_[other]] = true;
+    }
+  }
+
+  void unite_in(const Sweep<C>& sweep, double time, const std::vector<std::uint32_t>& places) {
+    for (SimplexNumber number = 0; number < sweep.slab.simplex_count(); ++number) {
+      std::uint32_t first = none;
+      for (const Vertex vertex : sweep.slab.simplex(number)) {
+        if (sweep.slab.times[vertex] != time) continue;
+        if (first == none)
+          first = places[vertex];
+        else
+          united_.unite(first, places[vertex]);
+      }
+    }
+  }
+
+  void number_components() {
+    component_.resize(vertex_count_);
+    for (std::size_t place = 0; place < component_.size(); ++place) {
+      const std::uint64_t root = united_.find(place);
+      if (root == place) {
+        component_[place] = outcomes_.size();
+        outcomes_.emplace_back();
+        plain_.push_back(lower_ && upper_ && !lower_->slab.has_missing && !upper_->slab.has_missing);
+      } else {
+        component_[place] = component_[root];
+      }
+      if (!paired_[place]) plain_[component_[place]] = false;
+    }
+    if (lower_) lower_vertices_ = vertices_of_special(lower_places_);
+    if (upper_) upper_vertices_ = vertices_of_special(upper_places_);
+  }
+
+  std::vector<std::vector<Vertex>> vertices_of_special(const std::vector<std::uint32_t>& places) const {
+    std::vector<std::vector<Vertex>> vertices(outcomes_.size());
+    for (Vertex vertex = 0; vertex < places.size(); ++vertex)
+      if (places[vertex] != none && !plain_[component_[places[vertex]]])
+        vertices[component_[places[vertex]]].push_back(vertex);
+    return vertices;
+  }
+
+  // The strands that reach each component, ascending.
+  std::vector<std::vector<std::uint64_t>> strands_of(Sweep<C>& sweep, double time,
+                                                     const std::vector<std::uint32_t>& places) {
+    std::vector<std::vector<std::uint64_t>> strands(outcomes_.size());
+    std::set<std::uint64_t> seen;
+    for (SimplexNumber number = 0; number < sweep.slab.simplex_count(); ++number) {
+      const auto [first, last] = sweep.slab.time_range(number);
+      if (first == last || (time == 0 ? first : last) != time) continue;
+      const std::uint64_t strand = sweep.strand_of(number);
+      if (!seen.insert(strand).second) continue;
+      for (const Vertex vertex : sweep.slab.simplex(number))
+        if (places[vertex] != none) {
+          strands[component_[places[vertex]]].push_back(strand);
+          break;
+        }
+    }
+    for (auto& list : strands) std::ranges::sort(list);
+    return strands;
+  }
+
+  Outcome resolve(std::size_t component, double time, GraphBuilder& graph) {
+    std::vector<std::int64_t> in = arcs_in(component);
+    const std::vector<std::uint64_t> out = upper_ ? strands_out_[component] : std::vector<std::uint64_t>{};
+
+    const bool passes = plain_[component] && in.size() == 1 && out.size() == 1;
+    if ((in.empty() && out.empty()) || passes) {
+      for (const std::uint64_t strand : out) upper_->set_arc(strand, in[0]);
+      return passes ? Outcome{in[0], -1} : Outcome{};
+    }
+    const Surroundings around(*this, component);
+    std::optional<EventType> type = !lower_   ? EventType::open_start
+                                    : !upper_ ? EventType::open_end
+                                              : std::optional<EventType>();
+    ChangeWithin change;
+    if (!type) {
+      change = around.change(in.size() == 1 && out.size() == 1);
+      type = type_of_node(in.size(), out.size(), around.all_places.all_on_wall(), change, C == 4);
+    }
+    if (!type) {
+      upper_->set_arc(out[0], in[0]);
+      return {in[0], -1};
+    }
+    const bool whole = !lower_ || !upper_ || in.empty() || out.empty();
+    TrackingEvent& event = graph.add_event(*type, time, std::move(in), out.size());
+    event.position = whole ? around.all_places.mean() : around.critical_position();
+    event.delta_euler = change.euler;
+    for (std::size_t i = 0; i < out.size(); ++i) upper_->set_arc(out[i], event.arcs_out[i]);
+    return {-1, graph.last_event()};
+  }
+
+  // The simplices around one component, for those few where something may happen.
+  class Surroundings {
+   public:
+    Surroundings(const Level& level, std::size_t component) : level_(level) {
+      if (level.lower_) {
+        lower_vertices_ = level.lower_vertices_[component];
+        lower_star_ = star(level.lower_->slab, lower_vertices_);
+      }
+      if (level.upper_) {
+        upper_vertices_ = level.upper_vertices_[component];
+        upper_star_ = star(level.upper_->slab, upper_vertices_);
+      }
+      for (const Vertex vertex : upper_vertices_) all_places.add(place_in_upper(vertex));
+      for (const Vertex vertex : lower_vertices_)
+        if (!upper_twin(vertex)) all_places.add(place_in_lower(vertex));
+    }
+
+    PlaceSum all_places;
+
+    ChangeWithin change(bool count_rims) const {
+      const auto any = [](Vertex) { return true; };
+      SideFinder<C> sides;
+      const Side before = sides.find(level_.lower_->slab, lower_star_, 1, Direction::before, any);
+      const Side after = sides.find(level_.upper_->slab, upper_star_, 0, Direction::after, any);
+      ChangeWithin change{after.euler - before.euler, 0};
+      if constexpr (C == 4)
+        if (count_rims) change.rims = rims(after, Direction::after) - rims(before, Direction::before);
+      return change;
+    }
+
+    // The mean of the vertices whose own links are critical, or of all if none is.
+    std::vector<double> critical_position() const {
+      PlaceSum critical;
+      for (const Vertex vertex : upper_vertices_)
+        if (is_critical(lower_twin(vertex), vertex)) critical.add(place_in_upper(vertex));
+      for (const Vertex vertex : lower_vertices_)
+        if (!upper_twin(vertex) && is_critical(vertex, std::nullopt)) critical.add(place_in_lower(vertex));
+      return critical.empty() ? all_places.mean() : critical.mean();
+    }
+
+   private:
+    static std::vector<SimplexNumber> star(const Slab<C>& slab, std::span<const Vertex> vertices) {
+      std::vector<SimplexNumber> star;
+      for (const Vertex vertex : vertices) {
+        const auto around = slab.stars.of(vertex);
+        star.insert(star.end(), around.begin(), around.end());
+      }
+      std::ranges::sort(star);
+      star.erase(std::unique(star.begin(), star.end()), star.end());
+      return star;
+    }
+
+    std::optional<Vertex> upper_twin(Vertex lower) const {
+      const Slab<C>& slab = level_.lower_->slab;
+      if (!level_.upper_ || !slab.in_step(lower)) return std::nullopt;
+      return find(level_.upper_->slab, slab.edges[lower] - slab.step_offset);
+    }
+    std::optional<Vertex> lower_twin(Vertex upper) const {
+      const Slab<C>& slab = level_.upper_->slab;
+      if (!level_.lower_ || !slab.in_step(upper)) return std::nullopt;
+      return find(level_.lower_->slab, slab.edges[upper] + level_.lower_->slab.step_offset);
+    }
+
+    Place place_in_upper(Vertex vertex) const {
+      const Slab<C>& slab = level_.upper_->slab;
+      return slab.place(slab.edges[vertex]);
+    }
+    // The samples of the step are those of the upper slab, if there is one.
+    Place place_in_lower(Vertex vertex) const {
+      const Slab<C>& slab = level_.lower_->slab;
+      if (!slab.in_step(vertex)) return slab.place_of_upper_end(slab.edges[vertex]);
+      return level_.upper_ ? level_.upper_->slab.place(slab.edges[vertex] - slab.step_offset)
+                           : slab.place(slab.edges[vertex]);
+    }
+
+    bool is_critical(std::optional<Vertex> lower, std::optional<Vertex> upper) const {
+      SideFinder<C> sides;
+      Side before, after;
+      if (lower) {
+        const Slab<C>& slab = level_.lower_->slab;
+        before = sides.find(slab, slab.stars.of(*lower), 1, Direction::before,
+                            [&](Vertex vertex) { return vertex == *lower; });
+      }
+      if (upper) {
+        const Slab<C>& slab = level_.upper_->slab;
+        after = sides.find(slab, slab.stars.of(*upper), 0, Direction::after,
+                           [&](Vertex vertex) { return vertex == *upper; });
+      }
+      return before.components.size() != 1 || after.components.size() != 1 || before.euler != after.euler;
+    }
+
+    std::int64_t rims(const Side& side, Direction direction) const {
+      std::vector<SimplexNumber> simplices;
+      for (const auto& component : side.components)
+        simplices.insert(simplices.end(), component.begin(), component.end());
+      const bool before = direction == Direction::before;
+      return RimCounter::count(
+          {(before ? level_.lower_ : level_.upper_)->slab, before ? 1.0 : 0.0, direction}, simplices);
+    }
+
+    const Level& level_;
+    std::span<const Vertex> lower_vertices_, upper_vertices_;
+    std::vector<SimplexNumber> lower_star_, upper_star_;
+  };
+
+  Sweep<C>*lower_, *upper_;
+  std::vector<std::uint32_t> lower_places_, upper_places_; // of each vertex of the slabs, or none
+  std::size_t vertex_count_;                               // of both, = places
+  UnionFind united_;                                       // places
+  std::vector<bool> paired_;                               // places: the vertex is in both slabs
+  std::vector<std::size_t> component_;                     // of each place
+  std::vector<bool> plain_; // components: the same on both sides, so that nothing can happen there
+  std::vector<std::vector<Vertex>> lower_vertices_, upper_vertices_; // of each component that is not plain
+  std::vector<std::vector<std::uint64_t>> strands_in_, strands_out_; // of each component
+  std::vector<Outcome> outcomes_;
+};
+
+} // namespace hyperiso::track_detail

@@ -1,0 +1,364 @@
+#pragma once
+// The components of the surface at one step, measured.
+
+#include "hyperiso/track.hpp"
+#include "track/level.hpp"
+#include "track/regions.hpp"
+
+namespace hyperiso::track_detail {
+
+// A connected piece of the surface at a step. It parts one inside from one outside region; what it encloses
+// is, if it is closed, the one of them that it surrounds, else the inside one.
+struct SurfacePiece {
+  std::size_t row = SIZE_MAX; // of the rows of the step
+  Region inside = 0, outside = 0;
+  bool closed = true;
+  double signed_volume = 0; // what this piece and its walls contribute to the volume of its inside region
+
+  Region enclosed() const { return closed && signed_volume < 0 ? outside : inside; }
+};
+
+// The rows of a step: one for each component of the level that is a track's, all its pieces together.
+template <class T, int D> // D: of space
+class StepFeatures {
+ public:
+  // `step`: the samples. `level` knows M there and what became of its components.
+  StepFeatures(const FieldView<const T, D>& step, const SlabSamples<T, D + 1>& samples, bool upper_step,
+               double isovalue, const ExtractOptions& options, const Level<D + 1>& level)
+      : step_(step), samples_(samples), upper_step_(upper_step), regions_(step, isovalue, options) {
+    for (int axis = 0; axis < D; ++axis) share_[axis] = shares(step.grid.axes[axis]);
+    add_rows(level);
+  }
+
+  const Regions<D>& regions() const { return regions_; }
+  const std::vector<bool>& wanted() const { return wanted_; }
+  const std::vector<Region>& regions_of(std::size_t row) const { return row_regions_[row]; }
+  const std::array<std::vector<double>, D>& share() const { return share_; }
+
+  // Measures the rows. Requires the surface at the step, with its edges and double positions.
+  std::vector<Feature> measure(const SimplexMesh<D>& surface, const Level<D + 1>& level) {
+    place_vertices(surface, level);
+    find_pieces(surface);
+    add_simplices(surface);
+    finish_pieces();
+    add_samples();
+    return std::move(features_);
+  }
+
+  // The row of each component of the level, or SIZE_MAX.
+  std::size_t row_of(std::size_t component) const { return row_of_component_[component]; }
+
+ private:
+  struct Counts {
+    std::int64_t vertices = 0, simplices = 0, boundary_edges = 0;
+  };
+  struct PlacedVertex {
+    std::array<std::int32_t, D> lower; // sample
+    std::uint8_t walls = 0; // bit 2k: within the first layer of axis k; bit 2k + 1: within the last one
+    std::uint8_t direction = 0;
+  };
+
+  void add_rows(const Level<D + 1>& level) {
+    for (const auto& outcome : level.outcomes()) {
+      const bool is_row = outcome.arc >= 0 || outcome.event >= 0;
+      row_of_component_.push_back(is_row ? features_.size() : SIZE_MAX);
+      if (!is_row) continue;
+      Feature& feature = features_.emplace_back();
+      feature.arc = outcome.arc;
+      feature.event = outcome.event;
+      feature.low.assign(D, std::numeric_limits<double>::infinity());
+      feature.high.assign(D, -std::numeric_limits<double>::infinity());
+      feature.centroid.assign(D, 0.0);
+      feature.minimum = std::numeric_limits<double>::infinity();
+      feature.maximum = -std::numeric_limits<double>::infinity();
+    }
+    row_regions_.resize(features_.size());
+    wanted_.resize(regions_.count());
+    last_cell_.resize(features_.size(), -1);
+    counts_.resize(features_.size());
+  }
+
+  // The number that an edge of the step has on the grid of the slab, in its lower step.
+  GridEdge edge_in_slab(GridEdge edge) const {
+    const auto row_length = static_cast<GridEdge>(step_.grid.axes[0].count);
+    const GridEdge row_and_direction = edge / row_length;
+    const GridEdge direction = row_and_direction & ((1u << D) - 1);
+    return ((row_and_direction >> D << (D + 1)) | direction) * row_length + edge % row_length;
+  }
+
+  void place_vertices(const SimplexMesh<D>& surface, const Level<D + 1>& level) {
+    const auto dims = step_.dims();
+    vertices_.resize(surface.vertex_count());
+    vertex_row_.assign(surface.vertex_count(), SIZE_MAX);
+    for (std::size_t vertex = 0; vertex < vertices_.size(); ++vertex) {
+      const auto ends = grid_edge_ends<D>(dims, surface.edges[vertex]);
+      PlacedVertex& placed = vertices_[vertex];
+      placed.direction = static_cast<std::uint8_t>(ends.direction);
+      bool near_wall = false;
+      for (int axis = 0; axis < D; ++axis) {
+        placed.lower[axis] = static_cast<std::int32_t>(ends.lower[axis]);
+        near_wall |= ends.lower[axis] == 0 || ends.upper[axis] == dims[axis] - 1;
+        if (ends.upper[axis] == 0) placed.walls |= static_cast<std::uint8_t>(1u << (2 * axis));
+        if (ends.lower[axis] == dims[axis] - 1) placed.walls |= static_cast<std::uint8_t>(2u << (2 * axis));
+      }
+      const GridEdge edge = edge_in_slab(surface.edges[vertex]);
+      const auto component = level.component_of(edge);
+      if (!component || row_of(*component) == SIZE_MAX) continue;
+      vertex_row_[vertex] = row_of(*component);
+      Feature& feature = features_[vertex_row_[vertex]];
+      ++counts_[vertex_row_[vertex]].vertices;
+      for (std::size_t axis = 0; axis < D; ++axis) {
+        const double coordinate = surface.positions[vertex * D + axis];
+        feature.low[axis] = std::min(feature.low[axis], coordinate);
+        feature.high[axis] = std::max(feature.high[axis], coordinate);
+      }
+      if (near_wall && !feature.on_wall)
+        feature.on_wall = samples_.place(upper_step_ ? edge + samples_.step_offset() : edge).on_wall;
+    }
+  }
+
+  void find_pieces(const SimplexMesh<D>& surface) {
+    UnionFind united(vertices_.size());
+    for (std::size_t corner = 0; corner < surface.simplices.size(); ++corner)
+      united.unite(surface.simplices[corner / D * D], surface.simplices[corner]);
+    piece_.resize(vertices_.size());
+    for (std::size_t vertex = 0; vertex < vertices_.size(); ++vertex) {
+      const std::uint64_t root = united.find(vertex);
+      if (root != vertex) {
+        piece_[vertex] = piece_[root];
+        continue;
+      }
+      piece_[vertex] = pieces_.size();
+      SurfacePiece& piece = pieces_.emplace_back();
+      piece.row = vertex_row_[vertex];
+      std::tie(piece.inside, piece.outside) = regions_beside(vertices_[vertex]);
+    }
+  }
+
+  std::pair<Region, Region> regions_beside(const PlacedVertex& vertex) const {
+    std::array<std::int64_t, D> lower, upper;
+    for (int axis = 0; axis < D; ++axis) {
+      lower[axis] = vertex.lower[axis];
+      upper[axis] = lower[axis] + (vertex.direction >> axis & 1);
+    }
+    const Region a = regions_.at(lower), b = regions_.at(upper);
+    return regions_.kind(a) == Regions<D>::Kind::inside ? std::pair{a, b} : std::pair{b, a};
+  }
+
+  // Coordinates measured from the lowest corner of the domain.
+  std::array<double, D> point(const SimplexMesh<D>& surface, std::uint64_t vertex) const {
+    std::array<double, D> result;
+    for (std::size_t axis = 0; axis < D; ++axis)
+      result[axis] = surface.positions[vertex * D + axis] - low_end(static_cast<int>(axis));
+    return result;
+  }
+  double low_end(int axis) const {
+    const Axis& a = step_.grid.axes[axis];
+    return std::min(a.coordinate(0), a.coordinate(a.count - 1));
+  }
+  double length(int axis) const {
+    const Axis& a = step_.grid.axes[axis];
+    return std::abs(a.coordinate(a.count - 1) - a.coordinate(0));
+  }
+  // The bit of PlacedVertex::walls for the wall where the axis' coordinate is largest.
+  unsigned far_wall(int axis) const { return (step_.grid.axes[axis].increasing() ? 2u : 1u) << (2 * axis); }
+
+  void add_simplices(const SimplexMesh<D>& surface) {
+    std::vector<std::array<std::uint64_t, 2>> all_edges; // where walls do not tell which are on the boundary
+    UnionFind rims(vertices_.size());
+    std::vector<bool> on_rim(vertices_.size());
+    std::vector<int> segments_at(D == 2 ? vertices_.size() : 0);
+    const auto add_boundary_edge = [&](std::uint64_t a, std::uint64_t b) {
+      rims.unite(a, b);
+      on_rim[a] = on_rim[b] = true;
+      pieces_[piece_[a]].closed = false;
+      if (vertex_row_[a] != SIZE_MAX) ++counts_[vertex_row_[a]].boundary_edges;
+    };
+    for (std::size_t simplex = 0; simplex < surface.simplex_count(); ++simplex) {
+      std::array<std::uint64_t, D> corners;
+      for (std::size_t corner = 0; corner < D; ++corner)
+        corners[corner] = surface.simplices[simplex * D + corner];
+      add_simplex(surface, corners);
+      if constexpr (D == 2)
+        for (const std::uint64_t corner : corners) ++segments_at[corner];
+      if constexpr (D == 3)
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+          const std::uint64_t a = corners[corner], b = corners[(corner + 1) % 3];
+          if (regions_.has_missing())
+            all_edges.push_back({std::min(a, b), std::max(a, b)});
+          else if (vertices_[a].walls & vertices_[b].walls)
+            add_boundary_edge(a, b);
+        }
+    }
+    std::ranges::sort(all_edges);
+    for (std::size_t i = 0; i < all_edges.size(); ++i)
+      if ((i == 0 || all_edges[i - 1] != all_edges[i]) &&
+          (i + 1 == all_edges.size() || all_edges[i + 1] != all_edges[i]))
+        add_boundary_edge(all_edges[i][0], all_edges[i][1]);
+    for (std::size_t vertex = 0; vertex < vertices_.size(); ++vertex) {
+      if (vertex_row_[vertex] != SIZE_MAX && on_rim[vertex] && rims.find(vertex) == vertex)
+        ++features_[vertex_row_[vertex]].wall_curves;
+      if (D == 2 && segments_at[vertex] == 1) pieces_[piece_[vertex]].closed = false;
+    }
+    // Each edge of a triangle is in two of them, or on the boundary.
+    for (std::size_t row = 0; row < features_.size(); ++row) {
+      const Counts& count = counts_[row];
+      const std::int64_t edges = D == 3 ? (3 * count.simplices + count.boundary_edges) / 2 : count.simplices;
+      features_[row].euler_characteristic = count.vertices - edges + (D == 3 ? count.simplices : 0);
+    }
+    add_wall_points(surface);
+  }
+
+  void add_simplex(const SimplexMesh<D>& surface, const std::array<std::uint64_t, D>& corners) {
+    SurfacePiece& piece = pieces_[piece_[corners[0]]];
+    std::array<std::array<double, D>, D> p;
+    for (std::size_t corner = 0; corner < D; ++corner) p[corner] = point(surface, corners[corner]);
+    double area = 0, mean = 0;
+    for (const auto& q : p) mean += q[0] / D;
+    if constexpr (D == 3) {
+      std::array<double, 3> normal;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+        normal[k] =
+            0.5 * ((p[1][i] - p[0][i]) * (p[2][j] - p[0][j]) - (p[1][j] - p[0][j]) * (p[2][i] - p[0][i]));
+      }
+      area = std::hypot(normal[0], normal[1], normal[2]);
+      piece.signed_volume += normal[0] * mean;
+      // The wall at the far end of axis 0 adds its length times the area inside, which is an integral along
+      // the rim: x cross the direction of the edge points out of the inside.
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        const auto next = (corner + 1) % 3;
+        if (vertices_[corners[corner]].walls & vertices_[corners[next]].walls & far_wall(0))
+          piece.signed_volume -= length(0) * (p[next][2] - p[corner][2]) * 0.5 * (p[next][1] + p[corner][1]);
+      }
+    } else {
+      area = std::hypot(p[1][0] - p[0][0], p[1][1] - p[0][1]);
+      piece.signed_volume += (p[1][1] - p[0][1]) * mean;
+    }
+    if (vertex_row_[corners[0]] == SIZE_MAX) return;
+    const std::size_t row = vertex_row_[corners[0]];
+    features_[row].surface_area += area;
+    ++counts_[row].simplices;
+    count_cell(row, corners);
+  }
+
+  // Simplices come cell by cell.
+  void count_cell(std::size_t row, const std::array<std::uint64_t, D>& corners) {
+    std::int64_t cell = 0;
+    for (int axis = D - 1; axis >= 0; --axis) {
+      std::int32_t lowest = vertices_[corners[0]].lower[axis];
+      for (const std::uint64_t corner : corners) lowest = std::min(lowest, vertices_[corner].lower[axis]);
+      cell = cell * step_.grid.axes[axis].count + lowest;
+    }
+    if (last_cell_[row] != cell) ++features_[row].cells;
+    last_cell_[row] = cell;
+  }
+
+  // Crossings of the domain's edge along the last axis where all other coordinates are largest: what is left
+  // of the walls' contribution to volumes.
+  void add_wall_points(const SimplexMesh<D>& surface) {
+    double scale = 1;
+    unsigned walls = 0;
+    for (int axis = 0; axis + 1 < D; ++axis) scale *= length(axis), walls |= far_wall(axis);
+    for (std::size_t vertex = 0; vertex < vertices_.size(); ++vertex) {
+      if ((vertices_[vertex].walls & walls) != walls) continue;
+      const auto [inside, outside] = regions_beside(vertices_[vertex]);
+      std::array<std::int64_t, D> lower;
+      std::copy(vertices_[vertex].lower.begin(), vertices_[vertex].lower.end(), lower.begin());
+      const bool inside_first = regions_.at(lower) == inside;
+      const double sign = inside_first == step_.grid.axes[D - 1].increasing() ? 1 : -1;
+      pieces_[piece_[vertex]].signed_volume += sign * scale * point(surface, vertex)[D - 1];
+    }
+  }
+
+  void finish_pieces() {
+    std::array<std::int64_t, D> far_corner;
+    double domain = 1;
+    for (int axis = 0; axis < D; ++axis) {
+      const Axis& a = step_.grid.axes[axis];
+      far_corner[axis] = a.increasing() ? a.count - 1 : 0;
+      domain *= length(axis);
+    }
+    std::vector<double> volume(regions_.count());
+    volume[regions_.at(far_corner)] = domain;
+    for (const SurfacePiece& piece : pieces_) {
+      volume[piece.inside] += piece.signed_volume;
+      volume[piece.outside] -= piece.signed_volume;
+      if (piece.row == SIZE_MAX) continue;
+      row_regions_[piece.row].push_back(piece.enclosed());
+      wanted_[piece.enclosed()] = true;
+    }
+    for (std::size_t row = 0; row < features_.size(); ++row) {
+      auto& regions = row_regions_[row];
+      std::ranges::sort(regions);
+      regions.erase(std::unique(regions.begin(), regions.end()), regions.end());
+      for (const Region region : regions) features_[row].volume += volume[region];
+    }
+  }
+
+  struct RegionSum {
+    double size = 0, mass = 0;
+    double minimum = std::numeric_limits<double>::infinity(), maximum = -minimum;
+    std::array<double, D> moment{};
+  };
+
+  void add_samples() {
+    std::vector<RegionSum> sums(regions_.count());
+    std::array<std::int64_t, D> index{};
+    for (std::size_t number = 0; number < regions_.rows(); ++number) {
+      double row_share = 1;
+      for (int axis = 1; axis < D; ++axis) row_share *= share_[axis][static_cast<std::size_t>(index[axis])];
+      for (const auto& run : regions_.row(number))
+        if (wanted_[run.region]) add_run(run, index, row_share, sums[run.region]);
+      for (int axis = 1; axis < D && ++index[axis] == step_.grid.axes[axis].count; ++axis) index[axis] = 0;
+    }
+    for (std::size_t row = 0; row < features_.size(); ++row) {
+      Feature& feature = features_[row];
+      for (const Region region : row_regions_[row]) {
+        const RegionSum& sum = sums[region];
+        feature.cell_volume += sum.size;
+        feature.mass += sum.mass;
+        feature.minimum = std::min(feature.minimum, sum.minimum);
+        feature.maximum = std::max(feature.maximum, sum.maximum);
+        for (std::size_t axis = 0; axis < D; ++axis) feature.centroid[axis] += sum.moment[axis];
+      }
+      for (double& coordinate : feature.centroid) coordinate /= feature.cell_volume;
+      if (regions_.has_missing()) feature.volume = feature.cell_volume; // its surface may be open inside
+    }
+  }
+
+  void add_run(const typename Regions<D>::Run& run, std::array<std::int64_t, D> index, double row_share,
+               RegionSum& sum) const {
+    double run_size = 0;
+    for (index[0] = run.begin; index[0] < run.end; ++index[0]) {
+      const auto value = static_cast<double>(step_.at(index));
+      const double size = row_share * share_[0][static_cast<std::size_t>(index[0])];
+      run_size += size;
+      sum.mass += size * value;
+      sum.minimum = std::min(sum.minimum, value);
+      sum.maximum = std::max(sum.maximum, value);
+      sum.moment[0] += size * step_.grid.axes[0].coordinate(index[0]);
+    }
+    sum.size += run_size;
+    for (std::size_t axis = 1; axis < D; ++axis)
+      sum.moment[axis] += run_size * step_.grid.axes[axis].coordinate(index[axis]);
+  }
+
+  FieldView<const T, D> step_;
+  SlabSamples<T, D + 1> samples_;
+  bool upper_step_; // which step of `samples_` this is
+  Regions<D> regions_;
+  std::array<std::vector<double>, D> share_;
+  std::vector<Feature> features_;
+  std::vector<std::size_t> row_of_component_;
+  std::vector<std::vector<Region>> row_regions_;
+  std::vector<bool> wanted_;            // regions
+  std::vector<std::int64_t> last_cell_; // of each row
+  std::vector<Counts> counts_;          // of each row
+  std::vector<PlacedVertex> vertices_;
+  std::vector<std::size_t> vertex_row_; // or SIZE_MAX
+  std::vector<std::size_t> piece_;      // of each vertex
+  std::vector<SurfacePiece> pieces_;
+};
+
+} // namespace hyperiso::track_detail

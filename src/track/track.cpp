@@ -1,0 +1,159 @@
+#include "hyperiso/track.hpp"
+
+#include "track/level.hpp"
+#include "track/links.hpp"
+#include "track/step_features.hpp"
+#include "track/step_window.hpp"
+#include "track/tracks.hpp"
+
+#include <memory>
+#include <new>
+
+namespace hyperiso {
+namespace {
+
+using namespace track_detail;
+
+template <class T, int D>
+class TrackingRun {
+ public:
+  TrackingRun(StepSource& source, double isovalue, const TrackOptions& options)
+      : options_(options), isovalue_(isovalue), window_(source), builder_(graph_), links_(graph_) {
+    graph_.axes = source.info().axes;
+    graph_.steps = graph_.axes.back().count;
+    graph_.isovalue = isovalue;
+  }
+
+  Result<TrackingGraph> run() {
+    if (const Status read = window_.read(0); !read) return read.error();
+    std::unique_ptr<Sweep<D>> lower;
+    for (std::int64_t step = 0; step + 1 < graph_.steps; ++step) {
+      if (const Status read = window_.read(step + 1); !read) return read.error();
+      auto slab =
+          make_slab<T, D>(SlabSamples<T, D>(window_.slab(step), isovalue_), isovalue_, slab_options());
+      if (!slab) return slab.error();
+      auto upper = std::make_unique<Sweep<D>>(std::move(*slab), time(step), time(step + 1));
+      if (const Status passed = pass_step(step, lower.get(), upper.get()); !passed) return passed.error();
+      upper->run(builder_);
+      lower = std::move(upper);
+      if (options_.extraction.progress &&
+          !options_.extraction.progress(static_cast<double>(step + 1) /
+                                        static_cast<double>(graph_.steps - 1)))
+        return Error{Code::cancelled, "tracking was cancelled"};
+    }
+    if (const Status passed = pass_step(graph_.steps - 1, lower.get(), nullptr); !passed)
+      return passed.error();
+    assign_tracks(graph_);
+    return std::move(graph_);
+  }
+
+ private:
+  double time(std::int64_t step) const { return graph_.axes.back().coordinate(step); }
+
+  ExtractOptions slab_options() const {
+    ExtractOptions options = options_.extraction;
+    options.progress = {};
+    return options;
+  }
+
+  using StepRows = StepFeatures<T, D - 1>;
+
+  Status pass_step(std::int64_t step, Sweep<D>* lower, Sweep<D>* upper) {
+    Level<D> level(lower, upper);
+    links_.pass_events();
+    level.resolve(time(step), builder_);
+    if (!options_.measure_features) return {};
+
+    const bool last = !upper;
+    const SlabSamples<T, D> samples(window_.slab(last ? step - 1 : step), isovalue_);
+    const auto view = samples.field().at_index(D - 1, last ? 1 : 0);
+    ExtractOptions extraction = slab_options();
+    extraction.precision = Precision::f64;
+    const auto surface = extract(view, isovalue_, extraction);
+    if (!surface) return surface.error();
+    auto rows = std::make_unique<StepRows>(view, samples, last, isovalue_, extraction, level);
+    add_features(step, rows->measure(*surface, level));
+    add_links(level, *rows);
+    links_.restart();
+    for (std::size_t component = 0; component < level.outcomes().size(); ++component)
+      if (rows->row_of(component) != SIZE_MAX)
+        for (const std::int64_t arc : level.arcs_out(component))
+          links_.start(arc, first_row_ + static_cast<std::int64_t>(rows->row_of(component)));
+    rows_before_ = std::move(rows);
+    return {};
+  }
+
+  void add_features(std::int64_t step, std::vector<Feature> features) {
+    first_row_before_ = first_row_;
+    first_row_ = static_cast<std::int64_t>(graph_.features.size());
+    for (Feature& feature : features) {
+      feature.step = step;
+      feature.time = time(step);
+      graph_.features.push_back(std::move(feature));
+    }
+  }
+
+  // Paper 003 section 3.3, for the rows of the last step that each row of this one comes from.
+  void add_links(const Level<D>& level, const StepRows& rows) {
+    if (!rows_before_) return;
+    const RegionOverlap<D - 1> overlap(rows_before_->regions(), rows_before_->wanted(), rows.regions(),
+                                       rows.wanted(), rows.share());
+    for (std::size_t component = 0; component < level.outcomes().size(); ++component) {
+      const std::size_t row = rows.row_of(component);
+      if (row == SIZE_MAX) continue;
+      for (const std::int64_t from : links_.sources(level.arcs_in(component))) {
+        FeatureLink link{from, first_row_ + static_cast<std::int64_t>(row)};
+        double common = 0;
+        for (const Region a : rows_before_->regions_of(static_cast<std::size_t>(from - first_row_before_)))
+          for (const Region b : rows.regions_of(row)) common += overlap.of(a, b);
+        link.overlap = common / std::min(feature(from).cell_volume, feature(link.to).cell_volume);
+        link.weak = options_.overlap_threshold && link.overlap <= *options_.overlap_threshold;
+        graph_.links.push_back(link);
+      }
+    }
+  }
+  const Feature& feature(std::int64_t number) const {
+    return graph_.features[static_cast<std::size_t>(number)];
+  }
+
+  const TrackOptions& options_;
+  double isovalue_;
+  StepWindow<T, D> window_;
+  TrackingGraph graph_;
+  GraphBuilder builder_;
+  LinkTracer links_;
+  std::unique_ptr<StepRows> rows_before_; // of the last step
+  std::int64_t first_row_ = 0, first_row_before_ = 0;
+};
+
+} // namespace
+
+const char* name_of(EventType type) {
+  constexpr const char* names[] = {"birth", "death", "merge", "split",      "compound", "genus",
+                                   "enter", "exit",  "touch", "open_start", "open_end"};
+  return names[static_cast<std::size_t>(type)];
+}
+
+Result<TrackingGraph> track(StepSource& source, double isovalue, const TrackOptions& options) {
+  const FieldInfo& info = source.info();
+  if (info.dimension() != 3 && info.dimension() != 4)
+    return Error{Code::unsupported_dimension,
+                 text("tracking needs a field of 3 or 4 axes, the last of them time; this one has ",
+                      info.dimension())};
+  const Axis& steps = info.axes.back();
+  if (steps.count < 2)
+    return Error{Code::invalid_argument,
+                 text("tracking needs at least 2 steps; the field has ", steps.count)};
+  if (!steps.increasing())
+    return Error{Code::invalid_argument, "tracking needs times that increase from step to step"};
+  try {
+    return visit_sample_type(info.type, [&]<class T>(T) -> Result<TrackingGraph> {
+      if (info.dimension() == 3) return TrackingRun<T, 3>(source, isovalue, options).run();
+      return TrackingRun<T, 4>(source, isovalue, options).run();
+    });
+  } catch (const std::bad_alloc&) {
+    return Error{Code::out_of_memory, "not enough memory to track"};
+  }
+}
+
+} // namespace hyperiso

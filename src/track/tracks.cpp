@@ -1,0 +1,220 @@
+#include "track/tracks.hpp"
+
+#include "core/union_find.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+
+namespace hyperiso::track_detail {
+namespace {
+
+class TrackAssignment {
+ public:
+  explicit TrackAssignment(TrackingGraph& graph) : graph_(graph), arcs_(graph.arcs.size()) {
+    for (std::size_t feature = 0; feature < graph.features.size(); ++feature) {
+      const Feature& row = graph.features[feature];
+      if (row.arc >= 0) arcs_[index(row.arc)].rows.push_back(feature);
+      if (row.event >= 0) row_of_event_[row.event] = feature;
+    }
+    for (const FeatureLink& link : graph.links)
+      if (link.weak) weak_.insert({link.from, link.to});
+    find_volumes();
+  }
+
+  void run() {
+    for (std::size_t event = 0; event < graph_.events.size(); ++event) pass(event);
+    for (Feature& row : graph_.features)
+      if (row.event >= 0) row.track = track_at(row.event);
+    summarize();
+  }
+
+ private:
+  struct Arc {
+    std::vector<std::size_t> rows;
+    double volume_before_end = 0, volume_after_start = 0;
+    std::int64_t last_track = -1; // at its end
+  };
+
+  static std::size_t index(std::int64_t number) { return static_cast<std::size_t>(number); }
+  Track& track(std::int64_t number) { return graph_.tracks[index(number)]; }
+
+  // An arc without a row has the volumes that flow into it, or out of it.
+  void find_volumes() {
+    for (std::size_t i = 0; i < arcs_.size(); ++i) { // arcs are in order of their starts
+      Arc& arc = arcs_[i];
+      const std::int64_t start = graph_.arcs[i].start_event;
+      if (!arc.rows.empty()) {
+        arc.volume_before_end = graph_.features[arc.rows.back()].volume;
+      } else if (const auto row = row_of_event_.find(start); row != row_of_event_.end()) {
+        arc.volume_before_end = graph_.features[row->second].volume;
+      } else {
+        for (const std::int64_t in : graph_.events[index(start)].arcs_in)
+          arc.volume_before_end += arcs_[index(in)].volume_before_end;
+      }
+    }
+    for (std::size_t i = arcs_.size(); i-- > 0;) {
+      Arc& arc = arcs_[i];
+      const std::int64_t end = graph_.arcs[i].end_event;
+      if (!arc.rows.empty()) {
+        arc.volume_after_start = graph_.features[arc.rows.front()].volume;
+      } else if (const auto row = row_of_event_.find(end); row != row_of_event_.end()) {
+        arc.volume_after_start = graph_.features[row->second].volume;
+      } else {
+        for (const std::int64_t out : graph_.events[index(end)].arcs_out)
+          arc.volume_after_start += arcs_[index(out)].volume_after_start;
+      }
+    }
+  }
+
+  std::int64_t new_track(double time, const std::string& type) {
+    Track& made = graph_.tracks.emplace_back();
+    made.start_time = made.end_time = time;
+    made.start_type = type;
+    return static_cast<std::int64_t>(graph_.tracks.size()) - 1;
+  }
+  void end_track(std::int64_t number, double time, const std::string& type) {
+    track(number).end_time = time;
+    track(number).end_type = type;
+  }
+
+  void pass(std::size_t number) {
+    TrackingEvent& event = graph_.events[number];
+    const std::string type = name_of(event.type);
+    for (const std::int64_t arc : event.arcs_in) event.tracks_in.push_back(arcs_[index(arc)].last_track);
+    const auto [in, out] = continuation(event);
+
+    std::int64_t heir = -1;
+    for (const std::int64_t arc : event.arcs_out) {
+      const std::int64_t made = arc == out ? arcs_[index(in)].last_track : new_track(event.time, type);
+      if (arc == out) heir = made;
+      event.tracks_out.push_back(made);
+      follow(arc, made);
+    }
+    for (const std::int64_t arc : event.arcs_in)
+      if (arc != in) end_track(arcs_[index(arc)].last_track, event.time, type);
+    relate(event, heir);
+  }
+
+  // The arc that goes on, as which; -1, -1 if none does.
+  std::pair<std::int64_t, std::int64_t> continuation(const TrackingEvent& event) {
+    if (event.arcs_in.empty() || event.arcs_out.empty()) return {-1, -1};
+    const auto before = [&](std::int64_t arc) {
+      const std::int64_t number = arcs_[index(arc)].last_track;
+      return std::tuple(-arcs_[index(arc)].volume_before_end, track(number).start_time, number);
+    };
+    const auto after = [&](std::int64_t arc) {
+      return std::pair(-arcs_[index(arc)].volume_after_start, arc);
+    };
+    const std::int64_t in = *std::ranges::min_element(event.arcs_in, {}, before);
+    const std::int64_t out = *std::ranges::min_element(event.arcs_out, {}, after);
+    if (is_weak(event, in, out)) return {-1, -1};
+    return {in, out};
+  }
+
+  bool is_weak(const TrackingEvent& event, std::int64_t in, std::int64_t out) const {
+    const auto row = row_of_event_.find(&event - graph_.events.data());
+    const bool at_step = row != row_of_event_.end();
+    const std::int64_t last = last_row(in);
+    const std::int64_t first = at_step ? static_cast<std::int64_t>(row->second) : first_row(out);
+    return weak_.contains({last, first});
+  }
+  std::int64_t first_row(std::int64_t arc) const {
+    if (!arcs_[index(arc)].rows.empty()) return static_cast<std::int64_t>(arcs_[index(arc)].rows.front());
+    const auto at_end = row_of_event_.find(graph_.arcs[index(arc)].end_event);
+    return at_end == row_of_event_.end() ? -1 : static_cast<std::int64_t>(at_end->second);
+  }
+  std::int64_t last_row(std::int64_t arc) const {
+    if (!arcs_[index(arc)].rows.empty()) return static_cast<std::int64_t>(arcs_[index(arc)].rows.back());
+    const auto at_start = row_of_event_.find(graph_.arcs[index(arc)].start_event);
+    return at_start == row_of_event_.end() ? -1 : static_cast<std::int64_t>(at_start->second);
+  }
+
+  // Gives the rows of an arc their track, a new one after each weak link.
+  void follow(std::int64_t number, std::int64_t current) {
+    Arc& arc = arcs_[index(number)];
+    graph_.arcs[index(number)].track = current;
+    const auto start = row_of_event_.find(graph_.arcs[index(number)].start_event);
+    std::int64_t before = start == row_of_event_.end() ? -1 : static_cast<std::int64_t>(start->second);
+    for (const std::size_t row : arc.rows) {
+      if (weak_.contains({before, static_cast<std::int64_t>(row)})) {
+        end_track(current, graph_.features[index(before)].time, "weak");
+        current = new_track(graph_.features[row].time, "weak");
+      }
+      graph_.features[row].track = current;
+      before = static_cast<std::int64_t>(row);
+    }
+    arc.last_track = current;
+  }
+
+  // Tracks that begin here come from those before; tracks that end here went into the heir.
+  void relate(const TrackingEvent& event, std::int64_t heir) {
+    const auto link = [&](std::int64_t parent, std::int64_t child) {
+      track(parent).children.push_back(child);
+      track(child).parents.push_back(parent);
+    };
+    for (const std::int64_t child : event.tracks_out)
+      if (child != heir)
+        for (const std::int64_t parent : event.tracks_in) link(parent, child);
+    if (heir < 0) return;
+    for (const std::int64_t parent : event.tracks_in)
+      if (parent != heir) link(parent, heir);
+  }
+
+  // The track that goes on at an event, or is born or dies there.
+  std::int64_t track_at(std::int64_t number) const {
+    const TrackingEvent& event = graph_.events[index(number)];
+    for (const std::int64_t track : event.tracks_in)
+      if (std::ranges::count(event.tracks_out, track) > 0) return track;
+    const auto largest = [&](const std::vector<std::int64_t>& arcs, const std::vector<std::int64_t>& tracks,
+                             double Arc::*volume) {
+      std::size_t best = 0;
+      for (std::size_t i = 1; i < arcs.size(); ++i)
+        if (arcs_[index(arcs[i])].*volume > arcs_[index(arcs[best])].*volume) best = i;
+      return tracks[best];
+    };
+    if (event.tracks_out.empty()) return largest(event.arcs_in, event.tracks_in, &Arc::volume_before_end);
+    return largest(event.arcs_out, event.tracks_out, &Arc::volume_after_start);
+  }
+
+  void summarize() {
+    UnionFind families(graph_.tracks.size());
+    for (const TrackingEvent& event : graph_.events) {
+      std::vector<std::int64_t> all = event.tracks_in;
+      all.insert(all.end(), event.tracks_out.begin(), event.tracks_out.end());
+      const bool open = event.type == EventType::open_start || event.type == EventType::open_end;
+      const bool wall =
+          event.type == EventType::touch || event.type == EventType::enter || event.type == EventType::exit;
+      for (const std::int64_t number : all) {
+        if (!open) families.unite(index(all[0]), index(number));
+        if (wall) track(number).clipped = true;
+      }
+    }
+    for (const Feature& row : graph_.features) {
+      Track& owner = track(row.track);
+      ++owner.steps;
+      owner.max_volume = std::max(owner.max_volume, row.volume);
+      owner.clipped |= row.on_wall;
+    }
+    for (std::size_t number = 0; number < graph_.tracks.size(); ++number) {
+      Track& one = graph_.tracks[number];
+      one.family = static_cast<std::int64_t>(families.find(number));
+      for (auto* list : {&one.parents, &one.children}) {
+        std::ranges::sort(*list);
+        list->erase(std::unique(list->begin(), list->end()), list->end());
+      }
+    }
+  }
+
+  TrackingGraph& graph_;
+  std::vector<Arc> arcs_;
+  std::map<std::int64_t, std::size_t> row_of_event_;
+  std::set<std::pair<std::int64_t, std::int64_t>> weak_; // links
+};
+
+} // namespace
+
+void assign_tracks(TrackingGraph& graph) { TrackAssignment(graph).run(); }
+
+} // namespace hyperiso::track_detail

@@ -1,0 +1,256 @@
+// The graph that `track` builds by local decisions against one built by taking every distinct vertex time of
+// the whole mesh as a possible event and finding the components of all slices and levels afresh.
+
+#include "core/union_find.hpp"
+#include "track_fields.hpp"
+
+#include <numeric>
+
+namespace hyperiso {
+namespace {
+
+using check::time_field;
+using check::track_field;
+
+// All faces of a mesh by dimension, found by their sorted corners.
+struct Complex {
+  using Corners = std::vector<std::uint64_t>;
+
+  Complex(const Mesh& mesh, const std::vector<double>& vertex_times) : times(vertex_times) {
+    const auto corners = static_cast<std::size_t>(mesh.simplex_dimension + 1);
+    faces.resize(corners);
+    tops.resize(corners);
+    for (std::size_t simplex = 0; simplex < mesh.simplex_count(); ++simplex)
+      for (unsigned subset = 1; subset < 1u << corners; ++subset) {
+        Corners face;
+        for (std::size_t corner = 0; corner < corners; ++corner)
+          if (subset >> corner & 1) face.push_back(mesh.simplices[simplex * corners + corner]);
+        std::ranges::sort(face);
+        ++tops[face.size() - 1][face];
+      }
+    for (std::size_t dimension = 0; dimension < corners; ++dimension)
+      for (const auto& [face, count] : tops[dimension]) faces[dimension].push_back(face);
+  }
+  std::pair<double, double> range(const Corners& face) const {
+    double first = times[face[0]], last = first;
+    for (const auto vertex : face)
+      first = std::min(first, times[vertex]), last = std::max(last, times[vertex]);
+    return {first, last};
+  }
+
+  std::vector<double> times;
+  std::vector<std::vector<Corners>> faces;
+  std::vector<std::map<Corners, int>> tops; // how many simplices have it
+};
+
+struct Piece {
+  std::int64_t euler = 0, rims = 0;
+};
+
+// The components of the slices between two consecutive vertex times, as a number for each edge that meets
+// them.
+struct Slices {
+  Slices(const Complex& complex, double from, double to, const std::function<bool(std::uint64_t)>& on_layer) {
+    const auto meets = [&](const Complex::Corners& face) {
+      const auto [first, last] = complex.range(face);
+      return first <= from && last >= to;
+    };
+    std::map<Complex::Corners, std::uint64_t> number;
+    for (const auto& edge : complex.faces[1])
+      if (meets(edge)) number.emplace(edge, number.size());
+    UnionFind united(number.size()), rims(number.size());
+    std::vector<bool> on_rim(number.size());
+    const auto edges_of = [&](const Complex::Corners& face) {
+      std::vector<std::uint64_t> edges;
+      for (std::size_t i = 0; i < face.size(); ++i)
+        for (std::size_t j = i + 1; j < face.size(); ++j)
+          if (const auto found = number.find({face[i], face[j]}); found != number.end())
+            edges.push_back(found->second);
+      return edges;
+    };
+    const bool surface = complex.faces.size() == 4;
+    for (const auto& triangle : complex.faces[2]) {
+      if (!meets(triangle)) continue;
+      const auto edges = edges_of(triangle);
+      for (const auto edge : edges) united.unite(edges[0], edge);
+      if (surface && complex.tops[2].at(triangle) == 1 && !std::ranges::all_of(triangle, on_layer))
+        for (const auto edge : edges) rims.unite(edges[0], edge), on_rim[edge] = true;
+    }
+    for (const auto& [edge, i] : number) {
+      component[edge] = united.find(i);
+      pieces[united.find(i)].rims += on_rim[i] && rims.find(i) == i;
+    }
+    for (std::size_t dimension = 1; dimension < complex.faces.size(); ++dimension)
+      for (const auto& face : complex.faces[dimension])
+        if (meets(face)) pieces[united.find(edges_of(face)[0])].euler += dimension % 2 == 1 ? 1 : -1;
+  }
+  std::map<Complex::Corners, std::uint64_t> component;
+  std::map<std::uint64_t, Piece> pieces;
+};
+
+// One line for each event: what it is, when, and what the components that end there began with.
+template <class T, int D>
+std::multiset<std::string> brute_force_history(const FieldView<const T, D>& field,
+                                               const ExtractOptions& extraction) {
+  ExtractOptions options = extraction;
+  options.precision = Precision::f64;
+  const auto mesh = extract(field, 0, options);
+  const auto position = [&](std::uint64_t vertex, std::size_t axis) {
+    return mesh->positions[vertex * D + axis];
+  };
+  std::vector<double> times;
+  for (std::size_t vertex = 0; vertex < mesh->vertex_count(); ++vertex)
+    times.push_back(position(vertex, D - 1));
+  const Complex complex(*mesh, times);
+  const auto last_step = static_cast<double>(field.dims()[D - 1] - 1);
+  const auto on_layer = [&](std::uint64_t vertex) {
+    return times[vertex] == 0 || times[vertex] == last_step;
+  };
+  const auto on_wall = [&](std::uint64_t vertex) {
+    for (std::size_t axis = 0; axis + 1 < D; ++axis)
+      if (position(vertex, axis) == 0 ||
+          position(vertex, axis) == static_cast<double>(field.dims()[axis] - 1))
+        return true;
+    return false;
+  };
+
+  std::set<double> moments(times.begin(), times.end());
+  std::multiset<std::string> history;
+  std::map<std::uint64_t, std::string> origin_before; // of each component just before the moment
+  std::optional<Slices> before;
+  for (auto moment = moments.begin(); moment != moments.end(); ++moment) {
+    std::optional<Slices> after;
+    if (std::next(moment) != moments.end()) after.emplace(complex, *moment, *std::next(moment), on_layer);
+
+    // Components of the closed level: vertices at the moment and pieces of faces that cross it.
+    UnionFind level(times.size() + complex.faces[1].size());
+    std::map<Complex::Corners, std::uint64_t> number;
+    for (const auto& edge : complex.faces[1]) number.emplace(edge, times.size() + number.size());
+    std::vector<bool> present(times.size() + complex.faces[1].size());
+    for (const auto& simplex : complex.faces.back()) {
+      std::vector<std::uint64_t> points;
+      for (std::size_t i = 0; i < simplex.size(); ++i) {
+        if (times[simplex[i]] == *moment) points.push_back(simplex[i]);
+        for (std::size_t j = i + 1; j < simplex.size(); ++j)
+          if (const auto [first, last] = complex.range({simplex[i], simplex[j]});
+              first < *moment && last > *moment)
+            points.push_back(number.at({simplex[i], simplex[j]}));
+      }
+      for (const auto point : points) level.unite(points[0], point), present[point] = true;
+    }
+
+    struct Node {
+      std::set<std::uint64_t> in, out;
+      bool all_on_wall = true;
+    };
+    std::map<std::uint64_t, Node> nodes;
+    for (std::uint64_t vertex = 0; vertex < times.size(); ++vertex)
+      if (present[vertex]) nodes[level.find(vertex)].all_on_wall &= on_wall(vertex);
+    const auto attach = [&](const std::optional<Slices>& slices, auto member) {
+      if (!slices) return;
+      for (const auto& [edge, component] : slices->component) {
+        const auto point = times[edge[0]] == *moment   ? edge[0]
+                           : times[edge[1]] == *moment ? edge[1]
+                                                       : number.at(edge);
+        (nodes[level.find(point)].*member).insert(component);
+      }
+    };
+    attach(before, &Node::in);
+    attach(after, &Node::out);
+
+    std::map<std::uint64_t, std::string> origin_after;
+    for (const auto& [root, node] : nodes) {
+      Piece change;
+      for (const auto component : node.out)
+        change.euler += after->pieces[component].euler, change.rims += after->pieces[component].rims;
+      for (const auto component : node.in)
+        change.euler -= before->pieces[component].euler, change.rims -= before->pieces[component].rims;
+      std::string type;
+      const auto m = node.in.size(), n = node.out.size();
+      if (*moment == 0)
+        type = "open_start";
+      else if (*moment == last_step)
+        type = "open_end";
+      else if (m == 0 && n == 1)
+        type = node.all_on_wall ? "enter" : "birth";
+      else if (m == 1 && n == 0)
+        type = node.all_on_wall ? "exit" : "death";
+      else if (m == 1 && n == 1)
+        type = D == 4 && change.euler + change.rims != 0           ? "genus"
+               : change.euler != 0 || (D == 4 && change.rims != 0) ? "touch"
+                                                                   : "";
+      else
+        type = n == 1 ? "merge" : m == 1 ? "split" : "compound";
+      if (m + n == 0) continue;
+      if (type.empty()) {
+        origin_after[*node.out.begin()] = origin_before.at(*node.in.begin());
+        continue;
+      }
+      char line[80];
+      std::snprintf(line, sizeof line, "%s %.9f %+d", type.c_str(), *moment,
+                    type.starts_with("open") ? 0 : static_cast<int>(change.euler));
+      for (const auto component : node.out) origin_after[component] = line;
+      std::multiset<std::string> origins;
+      for (const auto component : node.in) origins.insert(origin_before.at(component));
+      std::string text = line + (" out " + std::to_string(n)) + " in";
+      for (const auto& origin : origins) text += " (" + origin + ")";
+      history.insert(text);
+    }
+    origin_before = std::move(origin_after);
+    before = std::move(after);
+  }
+  return history;
+}
+
+std::multiset<std::string> tracked_history(const TrackingGraph& graph) {
+  std::vector<std::string> lines;
+  for (const auto& event : graph.events) {
+    char line[80];
+    std::snprintf(line, sizeof line, "%s %.9f %+d", name_of(event.type), event.time,
+                  static_cast<int>(event.delta_euler));
+    lines.push_back(line);
+  }
+  std::multiset<std::string> history;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    std::multiset<std::string> origins;
+    for (const auto arc : graph.events[i].arcs_in)
+      origins.insert(lines[static_cast<std::size_t>(graph.arcs[static_cast<std::size_t>(arc)].start_event)]);
+    std::string text = lines[i] + " out " + std::to_string(graph.events[i].arcs_out.size()) + " in";
+    for (const auto& origin : origins) text += " (" + origin + ")";
+    history.insert(text);
+  }
+  return history;
+}
+
+template <int D>
+void compare(const std::array<std::int64_t, D>& dims, int range, unsigned seed,
+             Inside inside = Inside::above) {
+  const auto field = check::random_field<float, D>(dims, range, seed);
+  TrackOptions options;
+  options.extraction.inside = inside;
+  const auto graph = track_field(time_field<float, D>(field), 0, options);
+  EXPECT_EQ(tracked_history(graph), (brute_force_history<float, D>(field.view, options.extraction)))
+      << "seed " << seed << ", samples up to " << range;
+}
+
+TEST(TrackBruteForce, ties_everywhere_in_2d) {
+  for (unsigned seed = 0; seed < 150; ++seed) compare<3>({4, 3, 4}, 1, seed);
+}
+TEST(TrackBruteForce, equal_times_in_2d) {
+  for (unsigned seed = 0; seed < 150; ++seed) compare<3>({4, 4, 4}, 3, seed);
+}
+TEST(TrackBruteForce, single_events_in_2d) {
+  for (unsigned seed = 0; seed < 100; ++seed) compare<3>({5, 4, 3}, 100000, seed, Inside::below);
+}
+TEST(TrackBruteForce, ties_everywhere_in_3d) {
+  for (unsigned seed = 0; seed < 40; ++seed) compare<4>({3, 3, 3, 3}, 1, seed);
+}
+TEST(TrackBruteForce, equal_times_in_3d) {
+  for (unsigned seed = 0; seed < 40; ++seed) compare<4>({3, 3, 3, 3}, 3, seed);
+}
+TEST(TrackBruteForce, single_events_in_3d) {
+  for (unsigned seed = 0; seed < 12; ++seed) compare<4>({3, 4, 3, 3}, 100000, seed, Inside::below);
+}
+
+} // namespace
+} // namespace hyperiso

@@ -1,0 +1,64 @@
+#pragma once
+// Fields whose history is known, and short ways to track them.
+
+#include "check.hpp"
+#include "hyperiso/track.hpp"
+
+#include <cstring>
+
+namespace hyperiso::check {
+
+// A copy of the samples as a field in memory, time last.
+template <class T, int D>
+Field time_field(const OwnedField<T, D>& owned) {
+  FieldInfo info;
+  info.type = sample_type_of<T>();
+  info.axes.assign(owned.view.grid.axes.begin(), owned.view.grid.axes.end());
+  info.has_time = true;
+  auto made = allocate_field(info);
+  std::memcpy(made->samples, owned.samples.data(), owned.samples.size() * sizeof(T));
+  return made->field;
+}
+
+inline TrackingGraph track_field(const Field& field, double isovalue, const TrackOptions& options = {}) {
+  FieldSteps steps(field);
+  auto graph = track(steps, isovalue, options);
+  EXPECT_TRUE(graph) << graph.error().message;
+  return graph ? *graph : TrackingGraph{};
+}
+
+// Axes of space from -half to half and steps 0 ... steps-1, all with spacing 1.
+template <int D>
+Grid<D> space_time_grid(int half, int steps) {
+  Grid<D> grid;
+  for (Axis& axis : grid.axes) {
+    axis.count = 2 * half + 1;
+    axis.origin = -half;
+  }
+  grid.axes[D - 1].count = steps;
+  grid.axes[D - 1].origin = 0;
+  return grid;
+}
+
+struct Moment {
+  EventType type;
+  double time;
+};
+
+// The events in order of time without those at the first and last step, times to 1e-5.
+inline void expect_history(const TrackingGraph& graph, const std::vector<Moment>& expected) {
+  std::vector<const TrackingEvent*> events;
+  for (const TrackingEvent& event : graph.events)
+    if (event.type != EventType::open_start && event.type != EventType::open_end) events.push_back(&event);
+  EXPECT_EQ(events.size(), expected.size());
+  for (std::size_t i = 0; i < std::min(events.size(), expected.size()); ++i) {
+    EXPECT_STREQ(name_of(events[i]->type), name_of(expected[i].type)) << "event " << i;
+    EXPECT_NEAR(events[i]->time, expected[i].time, 1e-5) << "event " << i;
+  }
+}
+
+inline std::ptrdiff_t count_events(const TrackingGraph& graph, EventType type) {
+  return std::ranges::count(graph.events, type, &TrackingEvent::type);
+}
+
+} // namespace hyperiso::check
