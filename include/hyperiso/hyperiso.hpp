@@ -12,6 +12,7 @@
 #include "hyperiso/progress.hpp"
 #include "hyperiso/result.hpp"
 #include "hyperiso/sample.hpp"
+#include "hyperiso/seeds.hpp"
 #include "hyperiso/slice.hpp"
 #include "hyperiso/statistics.hpp"
 #include "hyperiso/step_source.hpp"
