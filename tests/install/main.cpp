@@ -31,4 +31,7 @@ int main() {
   if (!measured) return std::cerr << measured.error().message << '\n', 1;
   std::cout << "at t = 7.25: area " << measured->content << ", Euler characteristic "
             << measured->euler_characteristic << (measured->closed ? ", closed\n" : ", open\n");
+
+  const auto written = hyperiso::write_mesh(*moment, "ball_7.25.ply");
+  return written ? 0 : 1;
 }
