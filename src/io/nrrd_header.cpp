@@ -75,7 +75,7 @@ struct TypeNames {
 
 const std::vector<TypeNames>& types() {
   static const std::vector<TypeNames> all = {
-      {SampleType::i8, {"signed char", "int8", "int8_t", "char"}},
+      {SampleType::i8, {"signed char", "int8", "int8_t"}},
       {SampleType::u8, {"uchar", "unsigned char", "uint8", "uint8_t"}},
       {SampleType::i16, {"short", "short int", "signed short", "signed short int", "int16", "int16_t"}},
       {SampleType::u16, {"ushort", "unsigned short", "unsigned short int", "uint16", "uint16_t"}},

@@ -60,14 +60,18 @@ bool keeps_time(const FieldInfo& info) {
   return true;
 }
 
-// Without an affine map: first position and spacing; nan where the coordinates are listed by key.
+// Without an affine map: spacing and the positions of the first and last sample (unu crops keep the position
+// only if both are there). nan: the coordinates are listed by key. Axes before `first_axis` have a direction.
 std::string positions(const FieldInfo& info, std::size_t first_axis) {
   const auto& axes = info.axes;
-  const auto unknown = [&](std::size_t axis) { return axis < first_axis || !axes[axis].coordinates.empty(); };
-  return line("spacings", axes.size(),
-              [&](std::size_t axis) { return unknown(axis) ? NAN : axes[axis].spacing; }) +
-         line("axis mins", axes.size(),
-              [&](std::size_t axis) { return unknown(axis) ? NAN : axes[axis].coordinate(0); }) +
+  const auto numbers = [&](const char* field, auto&& number) {
+    return line(field, axes.size(), [&](std::size_t axis) {
+      return axis < first_axis || !axes[axis].coordinates.empty() ? NAN : number(axes[axis]);
+    });
+  };
+  return numbers("spacings", [](const Axis& axis) { return axis.spacing; }) +
+         numbers("axis mins", [](const Axis& axis) { return axis.coordinate(0); }) +
+         numbers("axis maxs", [](const Axis& axis) { return axis.coordinate(axis.count - 1); }) +
          line("centerings", axes.size(),
               [&](std::size_t axis) { return axis < first_axis ? "???" : "node"; }) +
          line("units", axes.size(),
