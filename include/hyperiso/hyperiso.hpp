@@ -6,6 +6,7 @@
 #include "hyperiso/extract.hpp"
 #include "hyperiso/field.hpp"
 #include "hyperiso/grid.hpp"
+#include "hyperiso/interval.hpp"
 #include "hyperiso/io.hpp"
 #include "hyperiso/measure.hpp"
 #include "hyperiso/mesh.hpp"

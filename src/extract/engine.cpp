@@ -14,14 +14,13 @@ namespace {
 template <int D, Method M>
 class Engine {
  public:
-  Engine(const Samples<D>& samples, bool mirrored, const ExtractOptions& options,
+  Engine(const Samples<D>& samples, TableForm form, const ExtractOptions& options,
          const EngineOptions& engine_options, SimplexMesh<D>& mesh)
       : samples_(samples), options_(options), engine_options_(engine_options), mesh_(mesh),
         grid_(samples.dims), workers_(worker_count(options.threads)),
         kernels_(kernels<D, M>(engine_options.instructions)),
         row_kernels_(row_kernels(samples.test.type, engine_options.instructions)),
-        table_(march_table<D, M>(mirrored)), plan_(plan_units(grid_, workers_, engine_options.unit_samples)) {
-  }
+        table_(march_table<D, M>(form)), plan_(plan_units(grid_, workers_, engine_options.unit_samples)) {}
 
   Status run() {
     prepare_numbers();
@@ -253,18 +252,18 @@ class Engine {
 } // namespace
 
 template <int D>
-Status run_engine(const Samples<D>& samples, bool mirrored, const ExtractOptions& options,
+Status run_engine(const Samples<D>& samples, TableForm form, const ExtractOptions& options,
                   const EngineOptions& engine_options, SimplexMesh<D>& mesh) {
   return options.method == Method::hull
-             ? Engine<D, Method::hull>(samples, mirrored, options, engine_options, mesh).run()
-             : Engine<D, Method::simplicial>(samples, mirrored, options, engine_options, mesh).run();
+             ? Engine<D, Method::hull>(samples, form, options, engine_options, mesh).run()
+             : Engine<D, Method::simplicial>(samples, form, options, engine_options, mesh).run();
 }
 
-template Status run_engine(const Samples<2>&, bool, const ExtractOptions&, const EngineOptions&,
+template Status run_engine(const Samples<2>&, TableForm, const ExtractOptions&, const EngineOptions&,
                            SimplexMesh<2>&);
-template Status run_engine(const Samples<3>&, bool, const ExtractOptions&, const EngineOptions&,
+template Status run_engine(const Samples<3>&, TableForm, const ExtractOptions&, const EngineOptions&,
                            SimplexMesh<3>&);
-template Status run_engine(const Samples<4>&, bool, const ExtractOptions&, const EngineOptions&,
+template Status run_engine(const Samples<4>&, TableForm, const ExtractOptions&, const EngineOptions&,
                            SimplexMesh<4>&);
 
 } // namespace hyperiso

@@ -41,7 +41,7 @@ struct EngineOptions {
 // Extracts into `mesh`, in the memory it has if that is enough. `mesh.positions`, `simplices`, `edges` and
 // `active_cells` are set. Every axis has at least two samples. Throws std::bad_alloc.
 template <int D>
-Status run_engine(const Samples<D>& samples, bool mirrored, const ExtractOptions& options,
+Status run_engine(const Samples<D>& samples, TableForm form, const ExtractOptions& options,
                   const EngineOptions& engine_options, SimplexMesh<D>& mesh);
 
 } // namespace hyperiso

@@ -25,7 +25,7 @@ Status extract_with(const FieldView<const T, D>& field, double isovalue, const E
   }
   const auto falling =
       std::ranges::count_if(field.grid.axes, [](const Axis& axis) { return !axis.increasing(); });
-  return run_engine(samples, falling % 2 == 1, options, engine_options, mesh);
+  return run_engine(samples, {.mirrored = falling % 2 == 1}, options, engine_options, mesh);
 }
 
 } // namespace hyperiso

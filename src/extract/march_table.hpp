@@ -21,10 +21,16 @@ struct MarchTable {
   static constexpr std::size_t padding = 64;
 };
 
-// The table of a method, built at the first call in the process; thread-safe, immutable. `mirrored`: every
-// simplex is turned round, for grids whose axes reflect space. `corners` of an entry are in the order of the
-// method's own table.
+// How a table is taken.
+struct TableForm {
+  bool mirrored = false;        // every simplex is turned round, for grids whose axes reflect space
+  bool last_axis_first = false; // the last axis of the grid is axis 0 of the table, the most significant in
+                                // its order, and axis k is axis k + 1
+};
+
+// The table of a method, built at the first call in the process; thread-safe, immutable. `corners` of an
+// entry are in the order of the method's own table.
 template <int D, Method M>
-const MarchTable<D>& march_table(bool mirrored);
+const MarchTable<D>& march_table(TableForm form);
 
 } // namespace hyperiso

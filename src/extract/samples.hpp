@@ -50,6 +50,15 @@ struct Samples {
   double isovalue;
   InsideTest test;
 
+  // A lifted field: its last axis is that of `levels`, and a sample is one of the field less its level.
+  // Nothing of it is stored: the stride along that axis is 0. Empty for ordinary fields.
+  std::vector<double> levels;
+  std::vector<InsideTest> level_tests; // a level's
+
+  const InsideTest& test_in_layer(std::int64_t layer) const {
+    return levels.empty() ? test : level_tests[static_cast<std::size_t>(layer)];
+  }
+
   const std::byte* at(const std::array<std::int64_t, D>& index) const {
     std::int64_t offset = 0;
     for (int axis = 0; axis < D; ++axis) offset += index[axis] * strides[axis];
@@ -65,10 +74,32 @@ Samples<D> samples_of(const FieldView<const T, D>& field, double isovalue, Insid
                      sizeof(T),
                      {},
                      isovalue,
-                     inside_test<T>(isovalue, inside)};
+                     inside_test<T>(isovalue, inside),
+                     {},
+                     {}};
   for (int axis = 0; axis < D; ++axis)
     for (std::int64_t i = 0; i < samples.dims[axis]; ++i)
       samples.coordinates[axis].push_back(field.grid.axes[axis].coordinate(i));
+  return samples;
+}
+
+// The field lifted by an axis of levels; its coordinates are their numbers.
+template <class T, int D>
+Samples<D + 1> lifted_samples(const FieldView<const T, D>& field, const std::vector<double>& levels,
+                              Inside inside) {
+  const Samples<D> flat = samples_of(field, levels.front(), inside);
+  Samples<D + 1> samples{flat.first, {}, {}, flat.sample_size, {}, 0, flat.test, levels, {}};
+  for (int axis = 0; axis < D; ++axis) {
+    samples.dims[axis] = flat.dims[axis];
+    samples.strides[axis] = flat.strides[axis];
+    samples.coordinates[axis] = flat.coordinates[axis];
+  }
+  samples.dims[D] = static_cast<std::int64_t>(levels.size());
+  samples.strides[D] = 0;
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    samples.coordinates[D].push_back(static_cast<double>(level));
+    samples.level_tests.push_back(inside_test<T>(levels[level], inside));
+  }
   return samples;
 }
 

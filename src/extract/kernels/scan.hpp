@@ -139,7 +139,9 @@ class Scan {
       job_.row_kernels->gather(row, samples_.strides[0], grid_.dims[0], gathered_.data());
       row = gathered_.data();
     }
-    const bool missing = job_.row_kernels->inside(row, grid_.dims[0], samples_.test, mask);
+    const InsideTest& test = samples_.test_in_layer(index_[D - 1]);
+    const bool missing = job_.row_kernels->inside(row, grid_.dims[0], test, mask);
+    if (test.never) std::fill_n(mask, words_, 0); // a level beyond the range of the type
     std::uint64_t any = 0, all = ~std::uint64_t{0};
     for (std::int64_t word = 0; word < words_ - 1; ++word) any |= mask[word], all &= mask[word];
     any |= mask[words_ - 1], all &= mask[words_ - 1] | ~last_word_bits_;

@@ -102,6 +102,7 @@ class EdgeQueue {
       row_kernels_.load(group.upper_row, samples_.strides[0], &upper_[group.first], edges,
                         &upper_values_[group.first]);
     }
+    if (!samples_.levels.empty()) return compute_lifted_weights();
     double* a = lower_values_.data();
     double* b = upper_values_.data();
     const double isovalue = samples_.isovalue;
@@ -113,6 +114,19 @@ class EdgeQueue {
       for (std::size_t i = 0; i < count_; ++i) b[i] = (isovalue - a[i]) / (b[i] - a[i]);
     else
       for (std::size_t i = 0; i < count_; ++i) b[i] = crossing(a[i], b[i], isovalue);
+  }
+
+  // The same in a lifted field. Within a level it is the crossing of the field at that level, to the bit.
+  void compute_lifted_weights() {
+    for (const EdgeGroup<D>& group : groups_) {
+      const auto layer = static_cast<std::size_t>(group.upper[D - 1]);
+      const bool across = group.direction >> (D - 1) & 1;
+      const double upper_level = samples_.levels[layer], lower_level = samples_.levels[layer - across];
+      for (std::uint32_t i = group.first; i < group.end; ++i)
+        upper_values_[i] = across
+                               ? crossing(lower_values_[i] - lower_level, upper_values_[i] - upper_level, 0)
+                               : crossing(lower_values_[i], upper_values_[i], upper_level);
+    }
   }
 
   template <class Real>

@@ -1,0 +1,214 @@
+// Interval volumes: against the lifted field made real, against known numbers, and by what their users rely
+// on.
+
+#include "check.hpp"
+#include "extract/reference.hpp"
+#include "hyperiso/interval.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+using namespace hyperiso;
+using namespace hyperiso::check;
+
+namespace {
+
+template <class T, int D>
+VolumeMesh<D> filled(const OwnedField<T, D>& field, std::vector<double> levels,
+                     const IntervalOptions& options = {}) {
+  auto volume = interval(field.view, std::span<const double>(levels), options);
+  EXPECT_TRUE(volume) << volume.error().message;
+  return *std::move(volume);
+}
+
+// paper 000 section 6
+OwnedField<double, 3> paper_sphere() {
+  return make_field<double, 3>(box_grid<3>(14, 0, 1), [](const auto& p) {
+    double sum = 0;
+    for (const double x : p) sum += (x - 0.5) * (x - 0.5);
+    return sum;
+  });
+}
+
+IntervalOptions options_of(Method method, Inside inside = Inside::above, LevelAxis axis = LevelAxis::last) {
+  IntervalOptions options;
+  options.method = method;
+  options.inside = inside;
+  options.level_axis = axis;
+  options.precision = Precision::f64;
+  return options;
+}
+
+// The field with an axis of levels before or behind its own, each sample less its level.
+template <int D>
+OwnedField<double, D + 1> lifted(const FieldView<const float, D>& field, const std::vector<double>& levels,
+                                 LevelAxis place) {
+  std::array<std::int64_t, D + 1> dims;
+  const int shift = place == LevelAxis::first ? 1 : 0, level_axis = place == LevelAxis::first ? 0 : D;
+  for (int axis = 0; axis < D; ++axis) dims[axis + shift] = field.grid.axes[axis].count;
+  dims[level_axis] = static_cast<std::int64_t>(levels.size());
+  return make_field<double, D + 1>(unit_grid<D + 1>(dims), [&](const auto& point) {
+    std::array<std::int64_t, D> index;
+    for (int axis = 0; axis < D; ++axis) index[axis] = static_cast<std::int64_t>(point[axis + shift]);
+    return static_cast<double>(field.at(index)) - levels[static_cast<std::size_t>(point[level_axis])];
+  });
+}
+
+// The positions of each simplex' corners, without regard to orientation, the level axis left out.
+template <int D>
+std::multiset<std::multiset<std::vector<double>>> projected(const Mesh& mesh, int left_out) {
+  std::multiset<std::multiset<std::vector<double>>> all;
+  const auto dimension = static_cast<std::size_t>(mesh.dimension);
+  for (std::size_t simplex = 0; simplex < mesh.simplex_count(); ++simplex) {
+    std::multiset<std::vector<double>> corners;
+    for (std::size_t corner = 0; corner <= D; ++corner) {
+      std::vector<double> point;
+      for (std::size_t k = 0; k < dimension; ++k)
+        if (static_cast<int>(k) != left_out)
+          point.push_back(mesh.positions[mesh.simplices[simplex * (D + 1) + corner] * dimension + k]);
+      corners.insert(point);
+    }
+    all.insert(corners);
+  }
+  return all;
+}
+
+template <int D>
+void expect_the_lifted_surface(const OwnedField<float, D>& field, const std::vector<double>& levels) {
+  for (const Method method : {Method::hull, Method::simplicial})
+    for (const Inside inside : {Inside::above, Inside::below})
+      for (const LevelAxis place : {LevelAxis::last, LevelAxis::first}) {
+        const auto options = options_of(method, inside, place);
+        const auto volume = filled(field, levels, options);
+        const auto real = lifted<D>(field.view, levels, place);
+        const auto surface = extract_reference(real.view, 0, options);
+        EXPECT_EQ(volume.vertex_count(), surface.vertex_count());
+        EXPECT_TRUE(projected<D>(volume, -1) == projected<D>(surface, place == LevelAxis::first ? 0 : D));
+      }
+}
+
+} // namespace
+
+// The samples are whole numbers and the levels too, so both ways compute the same bits.
+TEST(Interval, is_the_projected_surface_of_the_lifted_field) {
+  for (unsigned seed = 0; seed < 3; ++seed) {
+    expect_the_lifted_surface(random_field<float, 2>({9, 7}, 6, seed), {-2, 3});
+    expect_the_lifted_surface(random_field<float, 2>({6, 70}, 6, seed), {-3, -1, 0, 4});
+    expect_the_lifted_surface(random_field<float, 3>({5, 4, 6}, 6, seed), {-2, 3});
+    expect_the_lifted_surface(random_field<float, 3>({4, 5, 3}, 3, seed), {-1, 0, 2});
+  }
+}
+
+TEST(Interval, sphere_of_paper_000) {
+  const auto field = paper_sphere();
+  const std::vector<double> levels{0.35, 0.37};
+  const auto paper = filled(field, levels, options_of(Method::hull, Inside::below, LevelAxis::first));
+  EXPECT_EQ(paper.vertex_count(), 1496u);
+  EXPECT_EQ(paper.simplex_count(), 4204u);
+  for (const Inside inside : {Inside::above, Inside::below})
+    for (const LevelAxis axis : {LevelAxis::last, LevelAxis::first}) {
+      const auto variant = filled(field, levels, options_of(Method::hull, inside, axis));
+      EXPECT_EQ(variant.vertex_count(), 1496u);
+      EXPECT_GE(variant.simplex_count(), 4048u);
+      EXPECT_LE(variant.simplex_count(), 4236u);
+    }
+  const auto simplicial = filled(field, levels, options_of(Method::simplicial));
+  EXPECT_EQ(simplicial.simplex_count(), 21108u);
+  EXPECT_EQ(simplicial.vertex_count(), 5762u);
+  const auto found = measure(paper);
+  EXPECT_EQ(found->bad_facets, 0u);
+  EXPECT_EQ(found->inverted_simplices, 0u);
+}
+
+// The volume between two spheres, at second order in the grid, by both methods.
+TEST(Interval, volume_of_a_shell) {
+  using std::numbers::pi;
+  for (const Method method : {Method::hull, Method::simplicial}) {
+    std::array<double, 2> error;
+    for (int level = 0; level < 2; ++level) {
+      const auto field = make_field<double, 3>(box_grid<3>((16 << level) + 1, -1, 1), [](const auto& p) {
+        return std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+      });
+      const auto found = measure(filled(field, {0.5, 0.8}, options_of(method)));
+      EXPECT_EQ(found->bad_facets, 0u);
+      EXPECT_EQ(found->euler_characteristic, 2);
+      error[static_cast<std::size_t>(level)] = std::abs(found->content - 4. / 3 * pi * (0.512 - 0.125));
+    }
+    EXPECT_GT(std::log2(error[0] / error[1]), 1.7);
+  }
+}
+
+TEST(Interval, simplicial_volumes_add_up_and_never_fold) {
+  const auto field = random_field<double, 3>({6, 5, 6}, 1000, 4);
+  const auto content = [&](double low, double high) {
+    const auto found = measure(filled(field, {low, high}, options_of(Method::simplicial)));
+    EXPECT_EQ(found->inverted_simplices, 0u);
+    EXPECT_EQ(found->bad_facets, 0u);
+    return found->content;
+  };
+  EXPECT_NEAR(content(-300.5, 20.5) + content(20.5, 700.5), content(-300.5, 700.5), 1e-9);
+  EXPECT_NEAR(content(-2000, 2000), 5 * 4 * 5, 1e-9) << "the whole box";
+  const auto several = measure(filled(field, {-300.5, 20.5, 100, 700.5}, options_of(Method::simplicial)));
+  EXPECT_NEAR(several->content, content(-300.5, 700.5), 1e-9);
+}
+
+// On random values the hull table folds a few simplices; on falling axes, in 2D and 3D and by both labels the
+// others must still be positive.
+template <int D>
+void expect_positive(const std::array<std::int64_t, D>& dims) {
+  for (const Inside inside : {Inside::above, Inside::below})
+    for (const LevelAxis axis : {LevelAxis::last, LevelAxis::first})
+      for (unsigned reversed = 0; reversed < 1u << D; ++reversed) {
+        auto field = random_field<double, D>(dims, 1000, reversed);
+        for (int k = 0; k < D; ++k)
+          if (reversed >> k & 1) field.view.grid.axes[k].spacing = -1;
+        const auto found = measure(filled(field, {-200.5, 300.5}, options_of(Method::hull, inside, axis)));
+        EXPECT_EQ(found->bad_facets, 0u);
+        EXPECT_LT(
+            static_cast<double>(found->inverted_simplices),
+            0.03 *
+                static_cast<double>(
+                    filled(field, {-200.5, 300.5}, options_of(Method::hull, inside, axis)).simplex_count()));
+      }
+}
+
+TEST(Interval, simplices_are_positive) {
+  expect_positive<2>({14, 13});
+  expect_positive<3>({6, 7, 6});
+}
+
+TEST(Interval, attributes_tell_level_and_isovalue) {
+  const auto field = make_field<double, 2>(unit_grid<2>({5, 3}), [](const auto& p) { return p[0]; });
+  const auto volume = filled(field, {0.25, 2.25, 2.75}, options_of(Method::hull));
+  const auto& level = std::get<std::vector<double>>(volume.attributes.at(0).values);
+  const auto& isovalue = std::get<std::vector<double>>(volume.attributes.at(1).values);
+  ASSERT_EQ(level.size(), volume.vertex_count());
+  for (std::size_t vertex = 0; vertex < level.size(); ++vertex) {
+    EXPECT_DOUBLE_EQ(isovalue[vertex], volume.positions[vertex * 2]); // the field is x
+    EXPECT_GE(level[vertex], 0);
+    EXPECT_LE(level[vertex], 2);
+  }
+  EXPECT_DOUBLE_EQ(measure(volume)->content, 2.5 * 2);
+}
+
+TEST(Interval, missing_data_and_levels_beyond_the_type) {
+  auto field = random_field<float, 3>({5, 5, 5}, 9, 2);
+  field.samples[62] = std::numeric_limits<float>::quiet_NaN();
+  const auto found = measure(filled(field, {-100, 100}, options_of(Method::simplicial)));
+  EXPECT_NEAR(found->content, 64 - 8, 1e-9);
+  const auto bytes = random_field<std::int8_t, 3>({5, 5, 5}, 9, 2);
+  EXPECT_NEAR(measure(filled(bytes, {-1000, 1000}, options_of(Method::simplicial)))->content, 64, 1e-9);
+  EXPECT_EQ(filled(bytes, {500, 1000}).simplex_count(), 0u);
+}
+
+TEST(Interval, levels_that_make_no_range) {
+  const auto field = random_field<float, 2>({3, 3}, 9, 2);
+  for (const std::vector<double>& bad :
+       {std::vector<double>{}, {1}, {1, 1}, {2, 1}, {0, NAN}, {0, HUGE_VAL}}) {
+    const auto volume = interval(field.view, std::span<const double>(bad));
+    ASSERT_FALSE(volume);
+    EXPECT_EQ(volume.error().code, Code::invalid_isovalue);
+  }
+  EXPECT_EQ(filled(random_field<float, 2>({3, 1}, 9, 2), {0, 1}).simplex_count(), 0u);
+}
