@@ -4,9 +4,10 @@
 
 processors := $(shell getconf _NPROCESSORS_ONLN)
 
-.PHONY: help build test clean
+.PHONY: help demo build test clean
 
 help:
+	@echo "make demo    the main job on a bundled simulation; the results go to demo/"
 	@echo "make build   the optimised program: build/release/bin/hyperiso"
 	@echo "make test    builds everything and runs the tests"
 	@echo "make clean   removes what the others made"
@@ -15,6 +16,11 @@ build:
 	@tools/install_dependencies build
 	cmake --preset release -D HYPERISO_BUILD_TESTS=OFF
 	cmake --build --preset release
+
+demo:
+	@tools/install_dependencies build demo
+	@$(MAKE) --no-print-directory build
+	@examples/demo build/release/bin/hyperiso demo
 
 test:
 	@tools/install_dependencies build test
