@@ -19,3 +19,4 @@
 #include "hyperiso/step_source.hpp"
 #include "hyperiso/table.hpp"
 #include "hyperiso/track.hpp"
+#include "hyperiso/view.hpp"

@@ -1,0 +1,9 @@
+// For builds without the viewer.
+
+#include "view/shell.hpp"
+
+namespace hyperiso {
+
+std::span<const unsigned char> compressed_shell() { return {}; }
+
+} // namespace hyperiso

@@ -1,0 +1,69 @@
+// What a page says about its surface; written by src/view/page.cpp.
+
+export interface AxisMetadata {
+  name: string;
+  unit: string;
+  samples: number; // 0: not on a grid
+  minimum: number;
+  maximum: number;
+  origin: number; // coordinate = origin + level * scale
+  scale: number;
+  coordinates?: number[]; // of the samples, where they are uneven
+}
+
+export type AttributeMetadata =
+  | { name: string; kind: "scalar"; minimum: number; maximum: number }
+  | { name: string; kind: "label"; labels: number[] };
+
+export interface Track {
+  id: number;
+  start_time: number;
+  end_time: number;
+  start_type?: string;
+  end_type?: string;
+  parents?: number[];
+  children?: number[];
+  max_volume?: number;
+  family_id?: number;
+  steps?: { time: number; volume: number }[];
+}
+
+export interface TrackEvent {
+  time: number;
+  type: string;
+  position: number[];
+  in: number[];
+  out: number[];
+  delta_euler?: number;
+}
+
+export interface Tracking {
+  tracks: Track[];
+  events: TrackEvent[];
+}
+
+export interface Metadata {
+  format: 1;
+  title: string;
+  field: string;
+  dimension: 3 | 4;
+  simplexDimension: 2 | 3;
+  time: boolean;
+  axes: AxisMetadata[];
+  vertices: number;
+  simplices: number;
+  attributes: AttributeMetadata[];
+  colourBy: string;
+  notes: string[];
+  blocks: { vertices: number; simplices: number }[];
+  isovalue?: number;
+  tracking?: Tracking;
+}
+
+/// The samples' coordinates along an axis, ascending; empty if it has none.
+export function samplesOf(axis: AxisMetadata): number[] {
+  if (axis.coordinates) return [...axis.coordinates].sort((a, b) => a - b);
+  if (axis.samples < 2) return [];
+  const step = (axis.maximum - axis.minimum) / (axis.samples - 1);
+  return Array.from({ length: axis.samples }, (_, i) => axis.minimum + i * step);
+}

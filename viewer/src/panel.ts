@@ -1,0 +1,253 @@
+// The controls beside the picture.
+import { type App, element } from "./app";
+import { COLOUR_MAPS, labelColour, mapGradient } from "./colours";
+import { axisFrame, rotated } from "./frame";
+import { readable, type Vector4 } from "./space";
+import type { State } from "./state";
+
+const input = (id: string): HTMLInputElement => element<HTMLInputElement>(id);
+const select = (id: string): HTMLSelectElement => element<HTMLSelectElement>(id);
+
+function option(list: HTMLSelectElement, value: string, text: string): void {
+  list.add(new Option(text, value));
+}
+
+function labelled(text: string, control: HTMLElement): HTMLLabelElement {
+  const label = document.createElement("label");
+  label.append(text + " ", control);
+  return label;
+}
+
+function slider(low: number, high: number, value: number, name: string): HTMLInputElement {
+  const control = document.createElement("input");
+  Object.assign(control, { type: "range", min: String(low), max: String(high), step: "any", value: String(value) });
+  control.setAttribute("aria-label", name);
+  return control;
+}
+
+export function buildPanel(app: App): void {
+  buildPresets(app);
+  buildTilts(app);
+  buildColour(app);
+  buildView(app);
+  buildClip(app);
+  buildAbout(app);
+}
+
+function buildPresets(app: App): void {
+  const presets = element("presets");
+  const buttons: { axis: number; button: HTMLButtonElement }[] = [];
+  const add = (axis: number, text: string, title: string, use: () => void): void => {
+    const button = document.createElement("button");
+    Object.assign(button, { type: "button", textContent: text, title });
+    button.addEventListener("click", use);
+    presets.append(button);
+    buttons.push({ axis, button });
+  };
+  const order = app.space.axes.map((_, k) => k);
+  if (app.space.timeAxis >= 0) order.unshift(order.pop()!);
+  for (const k of order)
+    add(k, app.space.axes[k]!.name, `Plane across ${app.space.axes[k]!.name}`, () => app.acrossAxis(k));
+  add(-1, "diagonal", "Oblique plane across all axes", () => app.diagonal());
+  app.onChange((_, changed) => {
+    if (!changed.has("frame")) return;
+    for (const { axis, button } of buttons) button.setAttribute("aria-pressed", String(axis === app.axis));
+  });
+}
+
+function buildTilts(app: App): void {
+  const { axes, dimension } = app.space;
+  const rotations = element("rotations");
+  const sliders: { control: HTMLInputElement; used: number }[] = [];
+  if (dimension === 4)
+    for (let i = 0; i < 4; ++i)
+      for (let j = i + 1; j < 4; ++j) {
+        const name = `${axes[i]!.name}${axes[j]!.name}`;
+        const control = slider(-180, 180, 0, `Rotate in the plane of ${axes[i]!.name} and ${axes[j]!.name}, degrees`);
+        const entry = { control, used: 0 };
+        // The slider tells how far to turn from where it stood: turns of different planes do not commute.
+        control.addEventListener("input", () => {
+          const angle = Number(control.value);
+          app.useFrame(rotated(app.state.frame, i, j, ((angle - entry.used) * Math.PI) / 180));
+          entry.used = angle;
+        });
+        sliders.push(entry);
+        rotations.append(labelled(name, control));
+      }
+  else element("tilts").hidden = true;
+
+  const inputs = axes.map((axis) => {
+    const control = document.createElement("input");
+    Object.assign(control, { type: "number", step: "any" });
+    element("normal-inputs").append(labelled(axis.name, control));
+    return control;
+  });
+  element("normal-form").addEventListener("submit", (event) => event.preventDefault());
+  for (const control of inputs)
+    control.addEventListener("change", () => {
+      const normal = [0, 1, 2, 3].map((k) => Number(inputs[k]?.value ?? 0)) as Vector4;
+      if (normal.every(Number.isFinite)) app.turnTo(normal);
+    });
+  input("hide-beyond").addEventListener("change", () => app.set({ hideBeyond: input("hide-beyond").checked }));
+  element("hide-row").hidden = dimension === 4;
+
+  app.onChange((state, changed) => {
+    if (changed.has("hideBeyond")) input("hide-beyond").checked = state.hideBeyond;
+    if (!changed.has("frame")) return;
+    inputs.forEach((control, k) => {
+      if (document.activeElement !== control) control.value = readable(state.frame[3][k]!, 0.01);
+    });
+    const preset = app.axis >= 0 && state.frame.flat().every((x, i) => x === axisFrame(app.space, app.axis).flat()[i]);
+    if (preset) for (const entry of sliders) entry.control.value = String((entry.used = 0));
+  });
+}
+
+function buildColour(app: App): void {
+  for (const one of app.colourings) option(select("colour"), one.key, one.name);
+  for (const name of Object.keys(COLOUR_MAPS)) option(select("map"), name, name);
+  select("colour").addEventListener("change", () => {
+    const chosen = app.colourings.find((one) => one.key === select("colour").value)!;
+    const { map } = app.state;
+    const fitting = chosen.diverging ? "blue to red" : map === "blue to red" ? "viridis" : map;
+    app.set({ colour: chosen.key, range: null, map: fitting, highlight: -1 });
+  });
+  select("map").addEventListener("change", () => app.set({ map: select("map").value }));
+  input("reversed").addEventListener("change", () => app.set({ reversed: input("reversed").checked }));
+  const useRange = (): void => {
+    const range: [number, number] = [Number(input("range-low").value), Number(input("range-high").value)];
+    if (range.every(Number.isFinite) && range[0] < range[1]) app.set({ range });
+  };
+  input("range-low").addEventListener("change", useRange);
+  input("range-high").addEventListener("change", useRange);
+  element("range-reset").addEventListener("click", () => app.set({ range: null }));
+  input("opacity").addEventListener("input", () => app.set({ opacity: Number(input("opacity").value) }));
+
+  app.onChange((state, changed) => {
+    select("colour").value = state.colour;
+    select("map").value = state.map;
+    input("reversed").checked = state.reversed;
+    input("opacity").value = String(state.opacity);
+    if (["colour", "map", "reversed", "range"].some((key) => changed.has(key as keyof State))) showLegend(app);
+  });
+}
+
+function showLegend(app: App): void {
+  const { colouring, state } = app;
+  const ranged = colouring.kind === "range";
+  element("map-controls").hidden = !ranged;
+  element("legend").hidden = colouring.kind === "solid";
+  element("legend-name").textContent = colouring.name;
+  const [low, high] = app.colourRange();
+  if (ranged) {
+    const step = (high - low) / 100;
+    element("legend-bar").style.background = mapGradient(state.map, state.reversed);
+    element("legend-low").textContent = input("range-low").value = readable(low, step);
+    element("legend-high").textContent = input("range-high").value = readable(high, step);
+  } else if (colouring.kind === "label") {
+    const count = Math.min(12, labelCount(app));
+    const stops = Array.from({ length: count }, (_, i) =>
+      `${labelColour(i)} ${(100 * i) / count}% ${(100 * (i + 1)) / count}%`);
+    element("legend-bar").style.background = `linear-gradient(to right, ${stops.join(", ")})`;
+    element("legend-low").textContent = labelText(app);
+    element("legend-high").textContent = "";
+  }
+}
+
+function labelCount(app: App): number {
+  if (app.state.colour === "component") return app.componentCount();
+  if (app.state.colour === "track") return app.metadata.tracking?.tracks.length ?? 12;
+  const attribute = app.metadata.attributes[Number(app.state.colour.slice(10))];
+  return attribute?.kind === "label" ? attribute.labels.length : 12;
+}
+function labelText(app: App): string {
+  const count = labelCount(app);
+  const what = app.state.colour === "component" ? "component" : app.state.colour === "track" ? "track" : "value";
+  return `${count} ${what}${count === 1 ? "" : "s"}`;
+}
+
+function buildView(app: App): void {
+  for (const button of document.querySelectorAll<HTMLButtonElement>("[data-view]"))
+    button.addEventListener("click", () => app.resetView(button.dataset["view"] as "home"));
+  input("orthographic").addEventListener("change", () =>
+    app.set({ projection: input("orthographic").checked ? "orthographic" : "perspective" }));
+  input("axes").addEventListener("change", () => app.set({ axes: input("axes").checked }));
+  input("wireframe").addEventListener("change", () => app.set({ wireframe: input("wireframe").checked }));
+  element("theme").addEventListener("click", () => app.set({ theme: app.dark() ? "light" : "dark" }));
+  const panel = element("panel"), toggle = element("panel-button");
+  const open = (shown: boolean): void => {
+    panel.classList.toggle("open", shown);
+    toggle.setAttribute("aria-expanded", String(shown));
+  };
+  toggle.addEventListener("click", () => open(!panel.classList.contains("open")));
+  element("view").addEventListener("pointerdown", () => open(false));
+  app.onChange((state) => {
+    input("orthographic").checked = state.projection === "orthographic";
+    input("axes").checked = state.axes;
+    input("wireframe").checked = state.wireframe;
+  });
+}
+
+function buildClip(app: App): void {
+  const box = element("box");
+  const sliders = [0, 1, 2].flatMap((row) => {
+    const line = document.createElement("div");
+    line.className = "span";
+    const name = document.createElement("span");
+    const pair = ["low", "high"].map((side, at) => slider(0, 1, at, `Box, ${side} end of axis ${row + 1} of the picture`));
+    pair.forEach((control, at) => control.addEventListener("input", () => {
+      const next = [...app.state.box];
+      next[2 * row + at] = Number(control.value);
+      const other = 2 * row + 1 - at;
+      next[other] = at === 0 ? Math.max(next[other]!, next[2 * row]!) : Math.min(next[other]!, next[2 * row + 1]!);
+      app.set({ box: next });
+    }));
+    line.append(name, ...pair);
+    box.append(line);
+    return pair;
+  });
+  option(select("clip-axis"), "-1", "none");
+  for (const row of [0, 1, 2]) option(select("clip-axis"), String(row), "");
+  select("clip-axis").addEventListener("change", () => app.set({ clipAxis: Number(select("clip-axis").value) }));
+  input("clip-at").addEventListener("input", () => app.set({ clipAt: Number(input("clip-at").value) }));
+  input("clip-flip").addEventListener("change", () => app.set({ clipFlip: input("clip-flip").checked }));
+  element("clip-reset").addEventListener("click", () => app.set({ clipAxis: -1, box: [0, 1, 0, 1, 0, 1] }));
+  app.onChange((state, changed) => {
+    if (changed.has("frame"))
+      for (const row of [0, 1, 2]) {
+        select("clip-axis").options[row + 1]!.text = `across ${app.pictureAxis(row)}`;
+        box.children[row]!.firstElementChild!.textContent = app.pictureAxis(row);
+      }
+    select("clip-axis").value = String(state.clipAxis);
+    element("clip-controls").hidden = state.clipAxis < 0;
+    input("clip-at").value = String(state.clipAt);
+    input("clip-flip").checked = state.clipFlip;
+    sliders.forEach((control, i) => (control.value = String(state.box[i])));
+  });
+}
+
+function buildAbout(app: App): void {
+  const { metadata, space, mesh } = app;
+  const lines: string[] = [];
+  if (metadata.isovalue !== undefined)
+    lines.push(`Isosurface of ${metadata.field || "the field"} at ${metadata.isovalue}.`);
+  const count = (n: number): string => n.toLocaleString("en");
+  const kind = mesh.corners === 4 ? "tetrahedra in four dimensions" : "triangles";
+  lines.push(`${count(mesh.simplexCount)} ${kind}, ${count(mesh.vertexCount)} vertices.`);
+  for (const [k, axis] of space.axes.entries()) {
+    const step = (axis.maximum - axis.minimum) / 1000;
+    lines.push(`${axis.name}: ${readable(axis.minimum, step)} to ${readable(axis.maximum, step)} ${axis.unit}` +
+      `${axis.samples ? `, ${count(axis.samples)} samples` : ""}${k === space.timeAxis ? " (time)" : ""}.`);
+  }
+  if (mesh.corners === 4)
+    lines.push("Between two steps the field is interpolated linearly, so every moment is a true cut of one surface in space and time.");
+  const paragraph = (text: string, className = ""): void => {
+    const p = document.createElement("p");
+    p.textContent = text;
+    p.className = className;
+    element("about-text").append(p);
+  };
+  for (const note of metadata.notes) paragraph(note, "note");
+  for (const line of lines) paragraph(line);
+  paragraph("Made with hyperiso. This file holds all it needs: it works without a network.");
+  (element("about") as unknown as HTMLDetailsElement).open = metadata.notes.length > 0;
+}

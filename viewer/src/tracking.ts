@@ -1,0 +1,136 @@
+// The tracking graph under the scene: a lane for each track along the time line, a glyph for each event.
+import { type App, element } from "./app";
+import { labelColour } from "./colours";
+import type { Track, TrackEvent } from "./metadata";
+
+const SVG = "http://www.w3.org/2000/svg";
+const LANE = 18, TOP = 12, LEFT = 18, RIGHT = 18;
+
+function svg<K extends keyof SVGElementTagNameMap>(name: K, attributes: Record<string, string | number>): SVGElementTagNameMap[K] {
+  const result = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(attributes)) result.setAttribute(key, String(value));
+  return result;
+}
+
+/// Tracks in lanes: the next free lane near those it came from, so that links are short.
+function lanesOf(tracks: readonly Track[]): Map<number, number> {
+  const lanes: number[] = []; // when each lane is free again
+  const result = new Map<number, number>();
+  for (const track of [...tracks].sort((a, b) => a.start_time - b.start_time || a.id - b.id)) {
+    const near = (track.parents ?? []).map((id) => result.get(id)).find((lane) => lane !== undefined) ?? 0;
+    const free = lanes.map((end, lane) => ({ lane, end })).filter(({ end }) => end < track.start_time)
+      .sort((a, b) => Math.abs(a.lane - near) - Math.abs(b.lane - near))[0];
+    const lane = free?.lane ?? lanes.length;
+    lanes[lane] = track.end_time;
+    result.set(track.id, lane);
+  }
+  return result;
+}
+
+const GLYPHS: Record<string, string> = {
+  merge: "M-5 -5 L5 0 L-5 5z",
+  split: "M5 -5 L-5 0 L5 5z",
+  compound: "M0 -6 L6 0 L0 6 L-6 0z",
+};
+
+function glyphOf(type: string): SVGElement {
+  if (GLYPHS[type]) return svg("path", { d: GLYPHS[type]! });
+  if (type === "genus" || type === "touch") return svg("rect", { x: -4, y: -4, width: 8, height: 8 });
+  return svg("circle", { r: 4.5 });
+}
+
+export function buildTracking(app: App): void {
+  const { tracking } = app.metadata;
+  if (!tracking || tracking.tracks.length === 0 || app.space.timeAxis < 0) return;
+  const host = element("tracking");
+  host.hidden = false;
+  const lanes = lanesOf(tracking.tracks);
+  const axis = app.space.axes[app.space.timeAxis]!;
+  const height = TOP * 2 + LANE * (Math.max(...lanes.values()) + 1);
+  const drawing = svg("svg", { height, role: "group", "aria-label": "Tracks and events through time" });
+  const now = svg("line", { class: "now", y1: 0, y2: height });
+  host.replaceChildren(drawing);
+  const y = (track: number) => TOP + LANE * (lanes.get(track)! + 0.5);
+  let x = (time: number) => time;
+
+  const draw = (): void => {
+    const width = Math.max(120, host.clientWidth);
+    x = (time) => LEFT + ((width - LEFT - RIGHT) * (time - axis.minimum)) / (axis.maximum - axis.minimum || 1);
+    drawing.replaceChildren();
+    drawing.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    for (const event of tracking.events) drawLinks(event);
+    for (const track of tracking.tracks) drawing.append(lane(track));
+    for (const event of tracking.events) if (!event.type.startsWith("open")) drawing.append(glyph(event));
+    drawing.append(now);
+    moveNow();
+  };
+  const moveNow = (): void => {
+    const shown = app.axis === app.space.timeAxis;
+    now.style.display = shown ? "" : "none";
+    const at = shown ? x(app.toPosition(app.state.offset)) : 0;
+    now.setAttribute("x1", String(at));
+    now.setAttribute("x2", String(at));
+  };
+  const drawLinks = (event: TrackEvent): void => {
+    for (const from of event.in)
+      for (const to of event.out) {
+        if (from === to || !lanes.has(from) || !lanes.has(to)) continue;
+        const at = x(event.time);
+        drawing.append(svg("path", { class: "link", d: `M${at} ${y(from)} L${at} ${y(to)}` }));
+      }
+  };
+
+  const lane = (track: Track): SVGElement => {
+    const group = svg("g", { class: "lane", tabindex: 0, role: "button", "data-track": track.id,
+      "aria-label": `Track ${track.id}, ${app.positionText(app.space.timeAxis, track.start_time)} to ${app.positionText(app.space.timeAxis, track.end_time)}` });
+    const begin = x(track.start_time), end = Math.max(x(track.end_time), begin + 2);
+    group.append(svg("path", { d: ribbon(track, begin, end), fill: labelColour(track.id) }));
+    const title = svg("title", {});
+    title.textContent = group.getAttribute("aria-label");
+    group.append(title);
+    const light = (on: boolean) => app.set({ highlight: on ? track.id & 0xffff : -1, ...(on && app.trackAttribute() >= 0 ? { colour: "track" } : {}) });
+    group.addEventListener("pointerenter", () => light(true));
+    group.addEventListener("pointerleave", () => light(false));
+    group.addEventListener("focus", () => light(true));
+    group.addEventListener("blur", () => light(false));
+    group.addEventListener("click", () => app.moveToTime(Math.max(track.start_time, Math.min(track.end_time, app.time))));
+    return group;
+  };
+  /// A bar, or a band as wide as the track is large at each step.
+  const ribbon = (track: Track, begin: number, end: number): string => {
+    const middle = y(track.id);
+    const largest = Math.max(...tracking.tracks.map((one) => one.max_volume ?? 0));
+    const half = (volume: number | undefined) => volume === undefined || !largest ? 3.5 : 1.5 + 5.5 * Math.sqrt(volume / largest);
+    const steps = track.steps ?? [];
+    if (steps.length < 2) {
+      const h = half(track.max_volume);
+      return `M${begin} ${middle - h}H${end}V${middle + h}H${begin}z`;
+    }
+    const upper = steps.map((step) => `${x(step.time)} ${middle - half(step.volume)}`);
+    const lower = [...steps].reverse().map((step) => `${x(step.time)} ${middle + half(step.volume)}`);
+    return `M${begin} ${middle}L${upper.join("L")}L${end} ${middle}L${lower.join("L")}z`;
+  };
+  const glyph = (event: TrackEvent): SVGElement => {
+    const tracks = [...event.in, ...event.out].filter((id) => lanes.has(id));
+    const at = tracks.length ? y(event.out.find((id) => lanes.has(id)) ?? tracks[0]!) : TOP;
+    const label = `${event.type} at ${app.positionText(app.space.timeAxis, event.time)}`;
+    const group = svg("g", { class: "glyph", transform: `translate(${x(event.time)} ${at})`, tabindex: 0, role: "button", "aria-label": label, "data-event": event.type });
+    const title = svg("title", {});
+    title.textContent = label;
+    group.append(glyphOf(event.type), title);
+    group.addEventListener("click", () => app.showEvent(event));
+    group.addEventListener("keydown", (key) => {
+      if ((key as KeyboardEvent).key === "Enter" || (key as KeyboardEvent).key === " ") app.showEvent(event);
+    });
+    return group;
+  };
+
+  app.onChange((state, changed) => {
+    if (changed.has("offset") || changed.has("frame")) moveNow();
+    if (changed.has("highlight"))
+      for (const one of drawing.querySelectorAll(".lane"))
+        one.classList.toggle("chosen", Number(one.getAttribute("data-track")) === state.highlight);
+  });
+  new ResizeObserver(draw).observe(host);
+  draw();
+}
