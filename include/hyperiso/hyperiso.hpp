@@ -10,6 +10,7 @@
 #include "hyperiso/io.hpp"
 #include "hyperiso/measure.hpp"
 #include "hyperiso/mesh.hpp"
+#include "hyperiso/polylines.hpp"
 #include "hyperiso/progress.hpp"
 #include "hyperiso/result.hpp"
 #include "hyperiso/sample.hpp"
