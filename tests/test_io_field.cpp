@@ -90,8 +90,10 @@ TYPED_TEST(EveryType, what_is_written_is_read_back) {
     const auto written = write_field(field, folder / name, options);
     ASSERT_TRUE(written) << written.error().message;
     ReadOptions how;
-    how.dims = dims_of(field.info);
-    how.type = field.info.type;
+    if (name == std::string("f.raw")) {
+      how.dims = dims_of(field.info);
+      how.type = field.info.type;
+    }
     const auto read = read_all(folder / name, how);
     ASSERT_TRUE(read) << read.error().message;
     ASSERT_EQ(read->info.type, field.info.type);
@@ -241,6 +243,7 @@ TEST(WriteField, an_affine_map_keeps_positions_in_the_world) {
       for (std::size_t row = 0; row < 4; ++row) EXPECT_NEAR(found[row], expected[row], 1e-12) << name << row;
     }
   }
+  EXPECT_EQ(check_field_format(uneven.info, folder / "f.pvd").error().code, Code::file_unsupported);
   EXPECT_EQ(write_field(uneven, folder / "f.pvd").error().code, Code::file_unsupported);
   EXPECT_EQ(write_field(mixing, folder / "f.pvd").error().code, Code::file_unsupported);
 }

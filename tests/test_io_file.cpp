@@ -157,6 +157,45 @@ TEST(AtomicFile, signal_handler_removes_the_temporary_files) {
   EXPECT_EQ(folder.names(), std::vector<std::string>{"c"});
 }
 
+// Several outputs of one run must not be left half there.
+TEST(FileGroup, files_take_their_places_together) {
+  const TemporaryFolder folder;
+  FileGroup group;
+  for (const char* name : {"a", "b"}) {
+    auto file = AtomicFile::create(folder / name);
+    ASSERT_TRUE(file);
+    file->write("new");
+    ASSERT_TRUE(file->commit(&group));
+    EXPECT_FALSE(fs::exists(folder / name));
+  }
+  ASSERT_TRUE(group.commit());
+  EXPECT_EQ(content_of(folder / "a"), "new");
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"a", "b"}));
+}
+
+TEST(FileGroup, without_commit_nothing_changes_and_nothing_is_left) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_file(folder / "a", "old"));
+  {
+    FileGroup group;
+    auto file = AtomicFile::create(folder / "a");
+    file->write("new");
+    ASSERT_TRUE(file->commit(&group));
+  }
+  EXPECT_EQ(content_of(folder / "a"), "old");
+  EXPECT_EQ(folder.names(), std::vector<std::string>{"a"});
+}
+
+TEST(FileGroup, files_that_wait_for_the_others_are_removed_on_a_signal) {
+  const TemporaryFolder folder;
+  FileGroup group;
+  auto file = AtomicFile::create(folder / "a");
+  ASSERT_TRUE(file->commit(&group));
+  remove_unfinished_files();
+  EXPECT_TRUE(folder.names().empty());
+  EXPECT_FALSE(group.commit());
+}
+
 TEST(Base64, pieces_of_any_size_give_the_text_of_the_whole) {
   const char* vectors[][2] = {{"", ""},
                               {"f", "Zg=="},

@@ -448,6 +448,8 @@ TEST(WriteMesh, meshes_that_a_format_cannot_hold) {
   const TemporaryFolder folder;
   const auto expect = [&](const MeshKind& kind, const char* name, const char* what) {
     expect_error(write_mesh(random_mesh(kind), folder / name), Code::file_unsupported, what);
+    expect_error(check_mesh_format(kind.dimension, kind.simplex_dimension, folder / name),
+                 Code::file_unsupported, what);
   };
   expect({4, 4}, "a.vtu", "pentatopes");
   expect({4, 3}, "a.vtp", "vtu");
@@ -455,7 +457,7 @@ TEST(WriteMesh, meshes_that_a_format_cannot_hold) {
   expect({3, 3}, "a.stl", "vtu");
   expect({3, 1}, "a.stl", "vtu, vtp, obj");
   expect({3, 1}, "a.off", "vtu, vtp, obj");
-  expect({5, 2}, "a.vtu", "none");
+  expect({5, 2}, "a.vtu", "no format");
   expect({3, 2}, "a.xyz", "\"xyz\"");
   expect({3, 2}, "a", "vtu, vtp, ply");
   EXPECT_TRUE(folder.names().empty());

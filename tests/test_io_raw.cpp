@@ -51,6 +51,20 @@ TEST(RawFile, every_type_byte_order_and_offset) {
   expect_every_byte_order_and_offset<double>();
 }
 
+// Silence would look like a conversion to that type.
+TEST(RawFile, its_options_are_refused_for_files_that_describe_themselves) {
+  TemporaryFolder folder;
+  write_content(folder / "f.bin", bytes_of(counting<float>(16)));
+  const auto raw = open_field({folder / "f.bin"}, raw_options({4, 4}, SampleType::f32));
+  for (const char* name : {"f.nrrd", "f.npy", "f.vti"}) {
+    ASSERT_TRUE(write_field(*(*raw)->read(), folder / name));
+    const auto reader = open_field({folder / name}, raw_options({4, 4}, SampleType::f32));
+    ASSERT_FALSE(reader);
+    EXPECT_EQ(reader.error().code, Code::invalid_argument);
+    EXPECT_FALSE(open_field({folder / name, folder / name}, raw_options({4, 4}, SampleType::f32)));
+  }
+}
+
 TEST(RawFile, the_last_of_four_axes_is_time) {
   TemporaryFolder folder;
   write_content(folder / "f.bin", bytes_of(counting<float>(16)));

@@ -13,6 +13,8 @@
 
 namespace hyperiso {
 
+class AtomicFile; // a file on its way to its place; internal
+
 /// How to read a field.
 struct ReadOptions {
   std::vector<std::int64_t> dims; ///< raw files: samples per axis, axis 0 fastest
@@ -95,11 +97,33 @@ struct WriteFieldOptions {
 Status write_field(const Field& field, const std::filesystem::path& path,
                    const WriteFieldOptions& options = {});
 
+/// Whether `write_field` can write such a field to that path: to be told before the work. The same errors.
+Status check_field_format(const FieldInfo& info, const std::filesystem::path& path,
+                          const WriteFieldOptions& options = {});
+
+/// Files that take their places together. A write that is given a group completes its file under a temporary
+/// name; `commit` renames all of them, in the order in which they were written. A group that is destroyed
+/// without it, or after an error, removes what has not taken its place. Pipes and devices are written at
+/// once.
+class FileGroup {
+ public:
+  FileGroup();
+  FileGroup(FileGroup&&) noexcept;
+  ~FileGroup();
+  /// Error: file_unwritable. Call once, last.
+  Status commit();
+
+ private:
+  friend class AtomicFile;
+  std::vector<AtomicFile> files_;
+};
+
 /// How to write a mesh.
 struct WriteMeshOptions {
   std::string format; ///< "vtu", "vtp", "ply", "stl", "obj", "off"; empty: by the suffix of the path
   std::vector<std::string> axis_names; ///< of the coordinates: in R^4 the last one names the point data `t`
   bool keep_edges = true; ///< vtu, vtp: store Mesh::edges and grid_axes, so that slices at steps stay exact
+  FileGroup* group = nullptr; ///< none: the file takes its place at once
 };
 
 /// Writes a mesh of dimension 2, 3 or 4, whole or not at all (written beside the target and renamed; a pipe
@@ -125,6 +149,11 @@ struct WriteMeshOptions {
 /// invalid_argument if the mesh contradicts itself or an attribute's name is taken; out_of_memory.
 Status write_mesh(const Mesh& mesh, const std::filesystem::path& path, const WriteMeshOptions& options = {});
 
+/// Whether `write_mesh` has a format for simplices of dimension `simplex_dimension` in R^dimension at that
+/// path: to be told before the work. Error: file_unsupported, as `write_mesh` would give it.
+Status check_mesh_format(int dimension, int simplex_dimension, const std::filesystem::path& path,
+                         const WriteMeshOptions& options = {});
+
 /// Reads a mesh, by the suffix of its name. vtu and vtp that write_mesh wrote come back as they were, with
 /// attributes and, if they were kept, grid edges and axes; where another program has changed the mesh so that
 /// the edges fit no grid any more, they are left out. vtu and vtp by others may be ascii, inline or appended,
@@ -141,7 +170,8 @@ struct SeriesEntry {
   std::filesystem::path file; ///< relative to the series file
 };
 /// Writes a ParaView .pvd that names the files and their times.
-Status write_series(const std::vector<SeriesEntry>& entries, const std::filesystem::path& path);
+Status write_series(const std::vector<SeriesEntry>& entries, const std::filesystem::path& path,
+                    FileGroup* group = nullptr);
 
 /// Removes the temporary files of writes under way in this process. For a program's handler of the signals
 /// that end it (async-signal-safe); the writes themselves fail if they go on.

@@ -208,14 +208,14 @@ void AtomicFile::close_and_sync() {
   if (!failed() && closed != 0 && errno != EINTR) error_number_ = errno;
 }
 
-void AtomicFile::close() {
+Status AtomicFile::commit(FileGroup* group) {
   flush();
   if (descriptor_ >= 0) close_and_sync();
   buffer_ = {};
-}
-
-Status AtomicFile::commit() {
-  close();
+  if (!failed() && group) {
+    group->files_.push_back(std::move(*this));
+    return {};
+  }
   if (!failed() && unfinished_) {
     if (::rename(temporary_.c_str(), replaces_.c_str()) == 0)
       forget_unfinished(std::exchange(unfinished_, nullptr));
@@ -229,6 +229,16 @@ Status AtomicFile::commit() {
 Error AtomicFile::error() const {
   return Error{Code::file_unwritable,
                text("cannot write ", target_.string(), ": ", std::strerror(error_number_))};
+}
+
+FileGroup::FileGroup() = default;
+FileGroup::FileGroup(FileGroup&&) noexcept = default;
+FileGroup::~FileGroup() = default;
+
+Status FileGroup::commit() {
+  for (AtomicFile& file : files_)
+    if (const Status placed = file.commit(); !placed) return placed;
+  return {};
 }
 
 } // namespace hyperiso

@@ -1,7 +1,7 @@
 #pragma once
 // Files that appear whole or not at all.
 
-#include "hyperiso/result.hpp"
+#include "hyperiso/io.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -39,12 +39,10 @@ class AtomicFile {
   void leave_gap(std::size_t bytes);
   void fill_gap(std::string_view bytes);
 
-  // Flushes to the device and closes; only the renaming is left to `commit`. For a set of files that must
-  // appear together: those that are ready wait for the others without holding a descriptor or a buffer.
-  void close();
-
-  // Flushes to the device, closes and renames. Error: file_unwritable. Call once, last.
-  Status commit();
+  // Flushes to the device, closes and renames; with a group, the group renames, and the
+  // file waits for that without a descriptor or a buffer. Error: file_unwritable. Call
+  // once, last.
+  Status commit(FileGroup* group = nullptr);
 
  private:
   explicit AtomicFile(std::filesystem::path target);

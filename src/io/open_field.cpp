@@ -43,6 +43,16 @@ const Format* format_of(const std::filesystem::path& path, const ReadOptions& op
   return options.dims.empty() ? nullptr : &raw;
 }
 
+// What describes raw samples is refused elsewhere: passing over it would look like doing what it says.
+Status check_options(const Format& format, const std::filesystem::path& path, const ReadOptions& options) {
+  const bool describe_raw =
+      !options.dims.empty() || options.type || options.skip_bytes != 0 || options.big_endian;
+  if (!describe_raw || format.open == open_raw || format.is_series) return {};
+  return Error{Code::invalid_argument, text(path.string(), ": a ", format.suffix,
+                                            " file says itself how its samples lie; dims, type, "
+                                            "skipped bytes and byte order are for raw files")};
+}
+
 } // namespace
 
 Result<OpenStep> open_step(const std::filesystem::path& path, const ReadOptions& options) {
@@ -52,6 +62,7 @@ Result<OpenStep> open_step(const std::filesystem::path& path, const ReadOptions&
     return Error{
         Code::file_unsupported,
         text(path.string(), ": is a series of files itself, so that it cannot be one step of another")};
+  if (const Status status = check_options(*format, path, options); !status) return status.error();
   if (format->open == open_vti) return open_vti_step(path, options);
   auto reader = format->open(path, options);
   if (!reader) return reader.error();
@@ -65,6 +76,7 @@ Result<std::unique_ptr<FieldReader>> open_field(const std::vector<std::filesyste
     if (paths.size() > 1) return open_list(paths, options);
     const Format* format = format_of(paths[0], options);
     if (!format) return unknown_format(paths[0]);
+    if (const Status status = check_options(*format, paths[0], options); !status) return status.error();
     return format->open(paths[0], options);
   });
 }

@@ -32,21 +32,27 @@ Result<FieldFormat> format_of(const std::filesystem::path& path, const std::stri
                                             "; the suffixes are ", names)};
 }
 
-Status check(const Field& field, const std::filesystem::path& path) {
-  const bool has_samples =
-      field.samples && field.strides.size() == field.info.axes.size() && !field.strides.empty() &&
-      std::ranges::all_of(field.info.axes, [](const Axis& axis) { return axis.count > 0; });
-  if (has_samples) return {};
-  return Error{Code::invalid_argument, text(path.string(), ": there are no samples to write")};
+bool has_samples(const Field& field) {
+  return field.samples && field.strides.size() == field.info.axes.size() && !field.strides.empty() &&
+         std::ranges::all_of(field.info.axes, [](const Axis& axis) { return axis.count > 0; });
+}
+
+Result<FieldFormat> fitting_format(const FieldInfo& info, const std::filesystem::path& path,
+                                   const WriteFieldOptions& options) {
+  const auto format = format_of(path, options.format);
+  if (!format) return format.error();
+  if (options.compress && (*format == FieldFormat::npy || *format == FieldFormat::raw))
+    return Error{Code::invalid_argument,
+                 text(path.string(), ": .npy and .raw files are not compressed; .nrrd can be")};
+  if (*format == FieldFormat::nrrd)
+    if (const Status status = check_fits_nrrd(info, path); !status) return status.error();
+  if (*format == FieldFormat::vti)
+    if (const Status status = check_fits_vti(info, path); !status) return status.error();
+  return *format;
 }
 
 Status write_as(FieldFormat format, const Field& field, const std::filesystem::path& path, bool compress) {
-  if (format == FieldFormat::nrrd)
-    if (Status status = check_fits_nrrd(field.info, path); !status) return status;
-  if (format == FieldFormat::vti) {
-    if (Status status = check_fits_vti(field.info, path); !status) return status;
-    if (field.info.has_time) return write_vti_series(field, path);
-  }
+  if (format == FieldFormat::vti && field.info.has_time) return write_vti_series(field, path);
   auto file = AtomicFile::create(path);
   if (!file) return file.error();
   switch (format) {
@@ -70,16 +76,20 @@ Status write_as(FieldFormat format, const Field& field, const std::filesystem::p
 
 Status write_field(const Field& field, const std::filesystem::path& path, const WriteFieldOptions& options) {
   try {
-    const auto format = format_of(path, options.format);
+    const auto format = fitting_format(field.info, path, options);
     if (!format) return format.error();
-    if (Status status = check(field, path); !status) return status;
-    if (options.compress && (*format == FieldFormat::npy || *format == FieldFormat::raw))
-      return Error{Code::invalid_argument,
-                   text(path.string(), ": .npy and .raw files are not compressed; .nrrd can be")};
+    if (!has_samples(field))
+      return Error{Code::invalid_argument, text(path.string(), ": there are no samples to write")};
     return write_as(*format, field, path, options.compress);
   } catch (const std::bad_alloc&) {
     return Error{Code::out_of_memory, text("no memory to write ", path.string())};
   }
+}
+
+Status check_field_format(const FieldInfo& info, const std::filesystem::path& path,
+                          const WriteFieldOptions& options) {
+  if (const auto format = fitting_format(info, path, options); !format) return format.error();
+  return {};
 }
 
 } // namespace hyperiso

@@ -44,27 +44,41 @@ std::string format_name(const std::filesystem::path& path, const WriteMeshOption
   return name;
 }
 
-bool fits(const Format& format, const Mesh& mesh) {
-  return mesh.simplex_dimension >= format.simplex_dimension[0] &&
-         mesh.simplex_dimension <= format.simplex_dimension[1] && mesh.dimension >= 2 &&
-         mesh.dimension <= format.largest_dimension && mesh.vertex_count() <= format.largest_count &&
-         mesh.simplex_count() <= format.largest_count;
+const char* name_of_simplices(int dimension) {
+  constexpr const char* names[] = {"points", "segments", "triangles", "tetrahedra", "pentatopes"};
+  return dimension >= 0 && dimension <= 4 ? names[dimension] : "simplices";
 }
 
-std::string description(const Mesh& mesh) {
-  return text(mesh.simplex_count(), " ", mesh.simplex_dimension, "-simplices on ", mesh.vertex_count(),
-              " vertices in ", mesh.dimension, " dimensions");
+bool fits(const Format& format, int dimension, int simplex_dimension) {
+  return simplex_dimension >= format.simplex_dimension[0] &&
+         simplex_dimension <= format.simplex_dimension[1] && dimension >= 2 &&
+         dimension <= format.largest_dimension;
 }
 
-Error does_not_fit(const Format& format, const Mesh& mesh, const std::filesystem::path& path) {
+Error does_not_fit(const Format& format, int dimension, int simplex_dimension,
+                   const std::filesystem::path& path) {
   std::string others;
   for (const Format& other : formats)
-    if (fits(other, mesh)) others += text(others.empty() ? "" : ", ", other.name);
-  const std::string advice = mesh.simplex_dimension >= 4
-                                 ? "pentatopes are no cells of any format here; slice the mesh first"
-                                 : "formats that hold it: " + (others.empty() ? "none" : others);
-  return Error{Code::file_unsupported, text(path.string(), ": ", format.name, " holds ", format.holds,
-                                            ", not ", description(mesh), "; ", advice)};
+    if (fits(other, dimension, simplex_dimension)) others += text(others.empty() ? "" : ", ", other.name);
+  const std::string advice =
+      others.empty() ? "no format here does; slice the mesh first" : "formats that do: " + others;
+  return Error{Code::file_unsupported,
+               text(path.string(), ": ", format.name, " holds ", format.holds, ", not ",
+                    name_of_simplices(simplex_dimension), " in ", dimension, " dimensions; ", advice)};
+}
+
+Result<const Format*> find_format(int dimension, int simplex_dimension, const std::filesystem::path& path,
+                                  const WriteMeshOptions& options) {
+  const std::string name = format_name(path, options);
+  const auto* format = std::find_if(std::begin(formats), std::end(formats),
+                                    [&](const Format& candidate) { return candidate.name == name; });
+  if (format == std::end(formats))
+    return Error{Code::file_unsupported,
+                 text(path.string(), ": \"", name, "\" is no format for meshes here; ",
+                      "there are vtu, vtp, ply, stl, obj and off")};
+  if (!fits(*format, dimension, simplex_dimension))
+    return does_not_fit(*format, dimension, simplex_dimension, path);
+  return format;
 }
 
 // A file that contradicts itself could crash the program that reads it.
@@ -100,22 +114,29 @@ Status check(const Mesh& mesh, const WriteMeshOptions& options) {
 
 Status write_mesh(const Mesh& mesh, const std::filesystem::path& path, const WriteMeshOptions& options) {
   try {
-    const std::string name = format_name(path, options);
-    const auto* format = std::find_if(std::begin(formats), std::end(formats),
-                                      [&](const Format& candidate) { return candidate.name == name; });
-    if (format == std::end(formats))
+    const auto found = find_format(mesh.dimension, mesh.simplex_dimension, path, options);
+    if (!found) return found.error();
+    const Format& format = **found;
+    if (mesh.vertex_count() > format.largest_count || mesh.simplex_count() > format.largest_count)
       return Error{Code::file_unsupported,
-                   text(path.string(), ": \"", name, "\" is no format for meshes here; ",
-                        "there are vtu, vtp, ply, stl, obj and off")};
-    if (!fits(*format, mesh)) return does_not_fit(*format, mesh, path);
+                   text(path.string(), ": ", format.name, " counts to ", format.largest_count,
+                        ", the mesh has ", mesh.vertex_count(), " vertices and ", mesh.simplex_count(),
+                        " simplices; vtu holds any number")};
     if (const auto checked = check(mesh, options); !checked) return checked;
     auto file = AtomicFile::create(path);
     if (!file) return file.error();
-    format->write(*file, mesh, options);
-    return file->commit();
+    format.write(*file, mesh, options);
+    return file->commit(options.group);
   } catch (const std::bad_alloc&) {
     return Error{Code::out_of_memory, text("no memory to write ", path.string())};
   }
+}
+
+Status check_mesh_format(int dimension, int simplex_dimension, const std::filesystem::path& path,
+                         const WriteMeshOptions& options) {
+  if (const auto found = find_format(dimension, simplex_dimension, path, options); !found)
+    return found.error();
+  return {};
 }
 
 } // namespace hyperiso

@@ -7,7 +7,8 @@
 
 namespace hyperiso {
 
-Status write_series(const std::vector<SeriesEntry>& entries, const std::filesystem::path& path) {
+Status write_series(const std::vector<SeriesEntry>& entries, const std::filesystem::path& path,
+                    FileGroup* group) {
   try {
     auto file = AtomicFile::create(path);
     if (!file) return file.error();
@@ -17,7 +18,7 @@ Status write_series(const std::vector<SeriesEntry>& entries, const std::filesyst
       file->write(text("<DataSet timestep=\"", entry.time, "\" part=\"0\" file=\"",
                        xml_escaped(entry.file.generic_string()), "\"/>\n"));
     file->write("</Collection>\n</VTKFile>\n");
-    return file->commit();
+    return file->commit(group);
   } catch (const std::bad_alloc&) {
     return Error{Code::out_of_memory, text("no memory to write ", path.string())};
   }

@@ -166,21 +166,20 @@ void write_vti(AtomicFile& file, const Field& field) { write_image(file, field, 
 
 Status write_vti_series(const Field& field, const std::filesystem::path& path) {
   const Axis& times = field.info.axes.back();
-  std::vector<AtomicFile> files;
+  FileGroup group;
   std::vector<SeriesEntry> entries;
   for (std::int64_t step = 0; step < times.count; ++step) {
     const std::string name = step_name(path, step, times.count);
     auto file = AtomicFile::create(path.parent_path() / name);
     if (!file) return file.error();
     write_image(*file, step_of(field, step), times.coordinate(step));
-    file->close();
-    if (file->failed()) return file->commit();
-    files.push_back(std::move(*file));
+    if (Status status = file->commit(&group); !status) return status;
     entries.push_back({times.coordinate(step), name});
   }
-  for (AtomicFile& file : files)
-    if (Status status = file.commit(); !status) return status;
-  return write_series(entries, std::filesystem::path(path).replace_extension(".pvd"));
+  if (Status status = write_series(entries, std::filesystem::path(path).replace_extension(".pvd"), &group);
+      !status)
+    return status;
+  return group.commit();
 }
 
 } // namespace hyperiso
