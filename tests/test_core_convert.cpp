@@ -54,9 +54,9 @@ TEST(Convert, to_f32_keeps_infinities_and_nan_and_clamps_finite_values) {
   EXPECT_EQ(found[5], 0.1f);
 }
 
-TEST(Convert, counts_what_it_clamps) {
-  EXPECT_EQ(convert(field_of<double>({-1, 0, 255, 255.4, 256, infinity}), {.type = SampleType::u8})->clamped,
-            3);
+TEST(Convert, counts_what_it_clamps_but_not_what_it_rounds) {
+  const Field field = field_of<double>({-1, -0.1, 255, 255.4, 256, infinity});
+  EXPECT_EQ(convert(field, {.type = SampleType::u8})->clamped, 2);
 }
 
 TEST(Convert, rescaling_reaches_both_ends_of_the_range) {

@@ -22,7 +22,7 @@ struct ConvertOptions {
 
 struct Converted {
   Field field;
-  std::uint64_t clamped = 0; ///< finite samples that lay outside the range of the type
+  std::uint64_t clamped = 0; ///< finite samples that lay outside the range of the type, by more than rounding
 };
 
 /// Converts the samples, after rescaling where that is asked for, to the nearest number of the new type,

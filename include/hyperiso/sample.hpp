@@ -52,6 +52,9 @@ struct SampleOptions {
 /// an axis without samples or no blobs; out_of_memory; cancelled.
 Result<Field> make_sample(const std::string& name, const SampleOptions& options);
 
+/// What `make_sample` would make. Errors: invalid_argument, as there.
+Result<FieldInfo> describe_sample(const std::string& name, const SampleOptions& options);
+
 /// The isovalue for a field made by `make_sample` with these options. Requires that the name is known.
 double sample_isovalue(const std::string& name, const SampleOptions& options);
 

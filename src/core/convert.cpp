@@ -22,7 +22,8 @@ void convert_row(const From* from, std::int64_t stride, std::int64_t count, To* 
       ++counts.missing;
       continue;
     }
-    if (std::isfinite(value) && (value < lowest || value > highest)) ++counts.clamped;
+    const double rounded = std::is_floating_point_v<To> ? value : std::nearbyint(value);
+    if (std::isfinite(value) && (rounded < lowest || rounded > highest)) ++counts.clamped;
     to[i] = nearest<To>(value);
   }
 }

@@ -217,7 +217,7 @@ Status fill_named(T* samples, const FieldInfo& info, const SampleField& field, c
 
 std::span<const SampleField> sample_fields() { return fields; }
 
-Result<Field> make_sample(const std::string& name, const SampleOptions& options) {
+Result<FieldInfo> describe_sample(const std::string& name, const SampleOptions& options) {
   const SampleField* field = find_field(name);
   if (!field) {
     std::string names;
@@ -225,12 +225,18 @@ Result<Field> make_sample(const std::string& name, const SampleOptions& options)
     return Error{Code::invalid_argument, text("there is no sample field '", name, "'; there are ", names)};
   }
   if (const Status status = check(options); !status) return status.error();
+  return describe(*field, options);
+}
+
+Result<Field> make_sample(const std::string& name, const SampleOptions& options) {
   try {
-    FieldInfo info = describe(*field, options);
-    auto made = allocate_field(info, options.memory_limit);
+    auto info = describe_sample(name, options);
+    if (!info) return info.error();
+    auto made = allocate_field(*info, options.memory_limit);
     if (!made) return made.error();
     const Status filled = visit_sample_type(options.type, [&](auto sample) {
-      return fill_named(reinterpret_cast<decltype(sample)*>(made->samples), info, *field, options);
+      return fill_named(reinterpret_cast<decltype(sample)*>(made->samples), *info, *find_field(name),
+                        options);
     });
     if (!filled) return filled.error();
     return std::move(made->field);
