@@ -1,0 +1,117 @@
+#include "cli/surface.hpp"
+
+#include "cli/failure.hpp"
+#include "core/text.hpp"
+#include "hyperiso/statistics.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace hyperiso::cli {
+
+std::string size_and_type(const FieldInfo& info) {
+  std::string size;
+  for (const Axis& axis : info.axes) size += (size.empty() ? "" : " x ") + std::to_string(axis.count);
+  return size + ' ' + name_of(info.type);
+}
+
+Json dims_of(const FieldInfo& info) {
+  Json dims = Json::array();
+  for (const Axis& axis : info.axes) dims.push_back(axis.count);
+  return dims;
+}
+
+std::string name_of_axis(const std::vector<Axis>& axes, std::size_t axis) {
+  return axes[axis].name.empty() ? std::to_string(axis) : axes[axis].name;
+}
+
+std::vector<Axis> axes_of(const Mesh& mesh) {
+  if (!mesh.grid_axes.empty()) return mesh.grid_axes;
+  std::vector<Axis> axes(static_cast<std::size_t>(mesh.dimension));
+  constexpr const char* names[] = {"x", "y", "z", "t"};
+  for (std::size_t axis = 0; axis < std::min<std::size_t>(axes.size(), 4); ++axis)
+    axes[axis].name = names[axis];
+  return axes;
+}
+
+bool is_mesh_file(const std::string& path) {
+  const std::string suffix = std::filesystem::path(path).extension().string();
+  for (const char* known : {".vtu", ".vtp", ".ply", ".stl", ".obj", ".off"})
+    if (suffix == known) return true;
+  return false;
+}
+
+const char* simplex_noun(int k) {
+  constexpr const char* nouns[] = {"points", "segments", "triangles", "tetrahedra", "pentatopes"};
+  return k >= 0 && k <= 4 ? nouns[k] : "simplices";
+}
+
+const char* content_noun(int k) {
+  constexpr const char* nouns[] = {"points", "length", "area", "volume"};
+  return k >= 0 && k <= 3 ? nouns[k] : "content";
+}
+
+Json json_of(const Measure& measure) {
+  return {{"components", measure.components},
+          {"euler_characteristic", measure.euler_characteristic},
+          {"boundary_facets", measure.boundary_facets},
+          {"bad_facets", measure.bad_facets},
+          {"closed", measure.closed},
+          {"content", measure.content},
+          {"vector_area", measure.vector_area},
+          {"zero_content_simplices", measure.zero_content_simplices}};
+}
+
+void add_measure(Report& report, const Measure& measure, int simplex_dimension) {
+  report.add("components", grouped(measure.components));
+  report.add("Euler char.", std::to_string(measure.euler_characteristic));
+  report.add("boundary", measure.closed ? "none: closed"
+                                        : fmt::format("{} {}", grouped(measure.boundary_facets),
+                                                      simplex_noun(simplex_dimension - 1)));
+  report.add("bad facets", grouped(measure.bad_facets));
+  report.add(content_noun(simplex_dimension), fmt::format("{:.10g}", measure.content));
+  if (!measure.vector_area.empty())
+    report.add("vector area", fmt::format("{:.6g}", fmt::join(measure.vector_area, ", ")));
+  report.add("zero content",
+             fmt::format("{} {}", grouped(measure.zero_content_simplices), simplex_noun(simplex_dimension)));
+}
+
+void check_axes(const FieldInfo& info) {
+  for (std::size_t axis = 0; axis < info.axes.size(); ++axis)
+    if (info.axes[axis].count < 2) {
+      fail_usage(text("the field is ", size_and_type(info), ": axis ", name_of_axis(info.axes, axis),
+                      " has one sample, and a surface needs two or more along every axis"));
+    }
+}
+
+Affine at_coordinate(const Affine& map, int axis, double value) {
+  const auto D = static_cast<std::size_t>(map.offset.size()), removed = static_cast<std::size_t>(axis);
+  Affine rest;
+  for (std::size_t row = 0; row < D; ++row) {
+    if (row == removed) continue;
+    rest.offset.push_back(map.offset[row] + map.linear[row * D + removed] * value);
+    for (std::size_t column = 0; column < D; ++column)
+      if (column != removed) rest.linear.push_back(map.linear[row * D + column]);
+  }
+  return rest;
+}
+
+std::string with_suffix(const std::string& path, const std::string& suffix) {
+  std::filesystem::path result = path;
+  const std::string extension = result.extension().string();
+  result.replace_filename(result.stem().string() + '_' + suffix + extension);
+  return result.string();
+}
+
+std::string why_empty(const Field& field, double isovalue) {
+  StatisticsCollector collector;
+  collector.add(field);
+  const Statistics statistics = std::move(collector).finish();
+  if (statistics.finite() == 0) return text("no surface: the field has no finite sample");
+  return text("no surface at isovalue ", isovalue, ": the values go from ", statistics.minimum, " to ",
+              statistics.maximum);
+}
+
+} // namespace hyperiso::cli

@@ -1,0 +1,45 @@
+#pragma once
+// What the verbs that make surfaces have in common: names of files, the measure, the way to world
+// coordinates.
+
+#include "cli/console.hpp"
+#include "cli/options.hpp"
+#include "hyperiso/measure.hpp"
+#include "hyperiso/mesh.hpp"
+
+namespace hyperiso::cli {
+
+// "24 x 24 x 24 x 41 f32"
+std::string size_and_type(const FieldInfo& info);
+Json dims_of(const FieldInfo& info); // [24, 24, 24, 41]
+
+// "x", or the number of an axis without a name
+std::string name_of_axis(const std::vector<Axis>& axes, std::size_t axis);
+
+// The axes of the space of a mesh: those of its grid, else x, y, z, t without samples.
+std::vector<Axis> axes_of(const Mesh& mesh);
+
+// Whether a file holds a mesh, by its suffix.
+bool is_mesh_file(const std::string& path);
+
+// "tetrahedra", "triangles", ... for simplices of dimension k
+const char* simplex_noun(int k);
+// "area", "volume", ...
+const char* content_noun(int k);
+
+Json json_of(const Measure& measure);
+void add_measure(Report& report, const Measure& measure, int simplex_dimension);
+
+// Fails if no surface can exist: an axis of one sample.
+void check_axes(const FieldInfo& info);
+
+// The same map without `axis`, which stays at `value`.
+Affine at_coordinate(const Affine& map, int axis, double value);
+
+// The file of one of several results: name.vtu, "iso0.5" -> name_iso0.5.vtu
+std::string with_suffix(const std::string& path, const std::string& suffix);
+
+// A warning for an empty surface: that the isovalue is outside the range of the field, if it is.
+std::string why_empty(const Field& field, double isovalue);
+
+} // namespace hyperiso::cli

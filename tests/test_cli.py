@@ -1,0 +1,481 @@
+"""The contract of the program: what scripts and people may rely on.
+
+    test_cli.py PROGRAM
+"""
+
+import gzip
+import json
+import os
+import re
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+PROGRAM = Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else Path("build/release/bin/hyperiso").resolve()
+ROOT = Path(__file__).resolve().parent.parent
+WATER = "examples/data/alpha_water_24x24x24x41.nrrd"
+VERBS = ["info", "extract", "slice", "measure", "table", "sample", "convert"]
+
+EXTRACT_KEYS = ["dimension", "dims", "isovalue", "method", "inside", "vertices", "simplices", "active_cells", "seconds",
+                "peak_memory_bytes"]
+MEASURE_KEYS = ["components", "euler_characteristic", "boundary_facets", "bad_facets", "closed", "content", "vector_area",
+                "zero_content_simplices"]
+
+
+class Run:
+    def __init__(self, *arguments, **options):
+        done = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, check=False, timeout=120, **options)
+        self.code, self.out, self.err = done.returncode, done.stdout.decode(), done.stderr.decode()
+
+    def json(self):
+        return json.loads(self.out)
+
+
+class Case(unittest.TestCase):
+    """Each test in an empty folder of its own, with the examples where the manual has them."""
+
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp(prefix="hyperiso-cli-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+        (self.folder / "examples").symlink_to(ROOT / "examples")
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder)
+
+    def files(self):
+        return sorted(path.name for path in self.folder.iterdir() if path.name != "examples")
+
+    def ok(self, *arguments, **options):
+        run = Run(*arguments, **options)
+        self.assertEqual((run.code, run.err), (0, ""), arguments)
+        return run
+
+    def assert_refused(self, code, *arguments, words=(), **options):
+        """One line of error, nothing on standard output, and the folder as it was."""
+        before = {name: (self.folder / name).read_bytes() for name in self.files() if (self.folder / name).is_file()}
+        run = Run(*arguments, **options)
+        self.assertEqual(run.code, code, (arguments, run.err))
+        self.assertRegex(run.err, r"\Ahyperiso: error: [^\n]+\n\Z", arguments)
+        self.assertEqual(run.out, "", arguments)
+        for word in words:
+            self.assertIn(word, run.err, arguments)
+        after = {name: (self.folder / name).read_bytes() for name in self.files() if (self.folder / name).is_file()}
+        self.assertEqual(after, before, arguments)
+
+    def sample(self, name="ball", dims="12,12,12", path="field.nrrd", *options):
+        self.ok("sample", name, "--dims", dims, "-o", path, *options)
+        return path
+
+
+class Json(Case):
+    def test_extract_has_exactly_these_keys(self):
+        path = self.sample("torus-morph", "16,15,14,7")
+        found = self.ok("extract", path, "--iso", "0.5", "--json").json()
+        self.assertEqual(list(found), EXTRACT_KEYS)
+        self.assertEqual(list(found["seconds"]), ["read", "extract", "write"])
+        self.assertEqual((found["dimension"], found["dims"], found["isovalue"]), (4, [16, 15, 14, 7], 0.5))
+        self.assertEqual((found["method"], found["inside"]), ("hull", "above"))
+        for key in ("vertices", "simplices", "active_cells", "peak_memory_bytes"):
+            self.assertIsInstance(found[key], int)
+            self.assertGreater(found[key], 0)
+
+    def test_measure_has_exactly_these_keys(self):
+        path = self.sample()
+        found = self.ok("extract", path, "--iso", "0.5", "--json", "--measure").json()
+        self.assertEqual(list(found), EXTRACT_KEYS + ["measure"])
+        measure = found["measure"]
+        self.assertEqual(list(measure), MEASURE_KEYS)
+        self.assertEqual((measure["components"], measure["euler_characteristic"], measure["bad_facets"]), (1, 2, 0))
+        self.assertIs(measure["closed"], True)
+        self.assertEqual(len(measure["vector_area"]), 3)
+        self.assertAlmostEqual(measure["content"], 3.14, delta=0.3)
+
+    def test_several_isovalues_are_surfaces(self):
+        path = self.sample()
+        found = self.ok("extract", path, "--iso", "0.4,0.5", "--json", "-o", "s.ply").json()
+        self.assertEqual(list(found), ["surfaces"])
+        self.assertEqual([surface["isovalue"] for surface in found["surfaces"]], [0.4, 0.5])
+        self.assertEqual(list(found["surfaces"][0]), EXTRACT_KEYS)
+        self.assertEqual(self.files(), ["field.nrrd", "s_iso0.4.ply", "s_iso0.5.ply"])
+
+    def test_slice(self):
+        path = self.sample("ball", "16,16,16,9")
+        found = self.ok("slice", path, "--iso", "0.5", "--time", "0.3", "--json", "--measure").json()
+        self.assertEqual(found["hyperplane"], {"normal": [0, 0, 0, 1], "offset": 0.3})
+        self.assertEqual(list(found["measure"]), MEASURE_KEYS)
+        self.assertEqual((found["measure"]["euler_characteristic"], found["measure"]["closed"]), (2, True))
+        self.assertGreater(found["simplices"], found["vertices"])
+
+    def test_table(self):
+        for dimension, entries, simplices, most in ((2, 16, 16, 2), (3, 256, 836, 6), (4, 65536, 856960, 26)):
+            found = self.ok("table", dimension, "--json").json()
+            self.assertEqual(list(found), ["dimension", "entries", "simplices", "max", "mean", "seconds"])
+            self.assertEqual([found[key] for key in ("dimension", "entries", "simplices", "max")],
+                             [dimension, entries, simplices, most])
+            self.assertEqual(found["mean"], simplices / entries)
+
+    def test_info(self):
+        found = self.ok("info", WATER, "--json").json()
+        self.assertEqual((found["dimension"], found["dims"], found["type"]), (4, [24, 24, 24, 41], "f32"))
+        self.assertEqual([axis["name"] for axis in found["axes"]], ["x", "y", "z", "t"])
+        self.assertEqual((found["axes"][3]["first"], found["axes"][3]["last"]), (0, 1))
+        self.assertEqual((found["missing"], found["range"][1]), (0, 1))
+        self.assertIn(0.5, found["suggested_isovalues"])
+        self.assertEqual(found["bytes"], 24 ** 3 * 41 * 4)
+
+    def test_measure_verb(self):
+        self.ok("extract", self.sample(), "--iso", "0.5", "-o", "ball.ply")
+        found = self.ok("measure", "ball.ply", "--json").json()
+        self.assertEqual(list(found["measure"]), MEASURE_KEYS)
+        self.assertEqual((found["dimension"], found["simplex_dimension"]), (3, 2))
+        self.assertEqual(found["measure"]["euler_characteristic"], 2)
+
+    def test_sample_and_convert(self):
+        found = self.ok("sample", "noise", "--dims", "4,5", "--type", "u8", "-o", "n.nrrd", "--json").json()
+        self.assertEqual((found["dims"], found["type"], found["isovalue"]), ([4, 5], "u8", 127.5))
+        found = self.ok("convert", "n.nrrd", "--to", "f64", "-o", "n.npy", "--json").json()
+        self.assertEqual((found["dims"], found["type"]), ([4, 5], "f64"))
+        self.assertEqual(self.ok("info", "n.npy", "--json").json()["type"], "f64")
+
+
+class Table(Case):
+    def test_counts_are_one_number_a_line_and_nothing_else(self):
+        for dimension, entries, simplices in ((2, 16, 16), (3, 256, 836), (4, 65536, 856960)):
+            printed = self.ok("table", dimension, "--counts").out
+            self.assertRegex(printed, r"\A(\d+\n)+\Z")
+            counts = list(map(int, printed.split()))
+            self.assertEqual((len(counts), sum(counts)), (entries, simplices))
+            self.assertEqual((counts[0], counts[-1]), (0, 0))
+
+    def test_entry_in_every_notation(self):
+        printed = {self.ok("table", 3, "--entry", labels).out for labels in ("24", "0x18", "0X18", "0b11000")}
+        self.assertEqual(len(printed), 1)
+        self.assertIn("6 triangles", printed.pop())
+
+    def test_verify(self):
+        for dimension in (2, 3):
+            run = self.ok("table", dimension, "--verify")
+            self.assertNotIn("FAILED", run.out)
+            found = self.ok("table", dimension, "--verify", "--json").json()["verification"]
+            self.assertEqual(found["facet_checks"], 2 * dimension * 2 ** 2 ** dimension)
+            self.assertEqual([value for key, value in found.items() if re.search("failures|mismatches|intersections", key)],
+                             [0] * 6)
+
+
+class WrongUsage(Case):
+    def test_one_line_and_exit_code_2(self):
+        field = self.sample()
+        for arguments in (
+                ["cut"], ["extract"], ["--foo"], ["extract", field], ["extract", field, "--iso"],
+                ["extract", field, "--iso", "1", "--foo"], ["extract", field, "--iso", "1", "--foo", "2"],
+                ["extract", field, "--iso", "0.5", "--iso", "0.6"], ["extract", field, "--iso", "0.5,0.5"],
+                ["extract", field, "--iso", "0.5", "--method", "cubes"], ["extract", field, "--iso", "0.5", "--inside", "out"],
+                ["extract", field, "--iso", "0.5", "--method", "barycentric"],
+                ["extract", field, "--iso", "0.5", "--precision", "f16"],
+                ["extract", field, "--iso", "0.5", "--threads", "0"], ["extract", field, "--iso", "0.5", "--threads", "two"],
+                ["extract", field, "--iso", "0.5", "--memory", "much"], ["extract", field, "--iso", "0.5", "--memory", "-1"],
+                ["extract", field, "--iso", "0.5", "--crop", "0:13"], ["extract", field, "--iso", "0.5", "--crop", "5:5"],
+                ["extract", field, "--iso", "0.5", "--crop", "a:b"], ["extract", field, "--iso", "0.5", "--crop", ",,,0:2"],
+                ["extract", field, "--iso", "0.5", "--crop", ",,0:5", "--steps", "0:5"],
+                ["extract", field, "--iso", "0.5", "--steps", "5"],
+                ["extract", field, "--iso", "0.5", "--time-axis", "w"], ["extract", field, "--iso", "0.5", "--time-axis", "7"],
+                ["slice", field, "--iso", "0.5"], ["slice", field, "--time", "0"],
+                ["slice", field, "--iso", "0.5", "--time", "0", "--axis", "x=0"],
+                ["slice", field, "--iso", "0.5", "--axis", "w=0"], ["slice", field, "--iso", "0.5", "--axis", "x"],
+                ["slice", field, "--iso", "0.5", "--time", "5"], ["slice", field, "--iso", "0.5", "--time", "nan"],
+                ["slice", field, "--iso", "0.4,0.5", "--time", "0", "-o", "s.pvd"],
+                ["measure"], ["measure", field], ["measure", "nothing.ply"],
+                ["table"], ["table", "5"], ["table", "1"], ["table", "three"], ["table", "3", "--entry", "256"],
+                ["table", "3", "--entry", "0x"], ["table", "3", "--entry", "-1"], ["table", "3", "--counts", "--verify"],
+                ["sample"], ["sample", "cube", "-o", "a.nrrd"], ["sample", "ball"],
+                ["sample", "ball", "--dims", "5", "-o", "a.nrrd"], ["sample", "ball", "--dims", "4,x", "-o", "a.nrrd"],
+                ["sample", "ball", "--dims", "4,0", "-o", "a.nrrd"], ["sample", "ball", "--dims", "4,-4", "-o", "a.nrrd"],
+                ["sample", "ball", "--dims", "4,4", "--type", "f16", "-o", "a.nrrd"],
+                ["sample", "ball", "--dims", "2,2,2,2,2,2,2,2,2", "-o", "a.nrrd"],
+                ["sample", "gaussians", "--dims", "4,4", "--blobs", "0", "-o", "a.nrrd"],
+                ["convert", field], ["convert", field, "-o", "a.txt"], ["convert", field, "--to", "f16", "-o", "a.npy"],
+                ["convert", field, "--rescale", "0", "-o", "a.npy"], ["convert", field, "--rescale", "1:1", "-o", "a.npy"],
+                ["info", field, "--dims", "4,4"],
+                ["convert", field, "--type", "u8", "-o", "a.npy"]):
+            self.assert_refused(2, *arguments)
+
+    def test_isovalue_that_is_no_number_writes_nothing(self):
+        field = self.sample()
+        for isovalue in ("abc", "nan", "NaN", "-nan", "inf", "-inf", "", "0.5,", ",", "1e999", "0.5x", "0,5;", "0x10", " 1"):
+            self.assert_refused(2, "extract", field, "--iso=" + isovalue if isovalue else "--iso=,", "-o", "a.ply")
+
+    def test_no_arguments_give_short_help(self):
+        run = Run()
+        self.assertEqual((run.code, run.out), (2, ""))
+        self.assertIn("hyperiso --help", run.err)
+
+    def test_unknown_verb_is_answered_with_the_verbs(self):
+        self.assert_refused(2, "extrakt", words=["extrakt", *VERBS])
+
+    def test_format_that_cannot_hold_the_result_is_told_before_the_work(self):
+        field = self.sample("ball", "6,6,6,6")
+        self.assert_refused(2, "extract", field, "--iso", "0.5", "-o", "a.ply", words=["a.ply", "vtu"])
+        self.assert_refused(2, "extract", field, "--iso", "0.5", "-o", "a.xyz", words=["a.xyz"])
+        self.assert_refused(2, "extract", field, "--iso", "0.5", "-o", "a.vtu", "--format", "doc")
+
+    def test_dimension_says_what_is_supported(self):
+        self.sample("ball", "4,4,4,4,4", "five.nrrd")
+        self.sample("ball", "4,4", "two.nrrd")
+        self.assert_refused(2, "extract", "five.nrrd", "--iso", "0.5", words=["5", "2 to 4"])
+        self.assert_refused(2, "slice", "two.nrrd", "--iso", "0.5", "--time", "0", words=["2", "3 to 4"])
+
+    def test_axis_of_one_sample_is_named(self):
+        self.sample("ball", "5,5,1", "flat.nrrd")
+        self.assert_refused(2, "extract", "flat.nrrd", "--iso", "0.5", words=["axis z", "5 x 5 x 1"])
+        self.assert_refused(2, "extract", self.sample(), "--iso", "0.5", "--crop", ",3:4", words=["axis y"])
+
+
+class UnusableInput(Case):
+    def write(self, name, content):
+        (self.folder / name).write_bytes(content)
+        return name
+
+    def nrrd(self, name, sizes, data, encoding="raw"):
+        header = (f"NRRD0004\ntype: float\ndimension: {len(sizes)}\nsizes: {' '.join(map(str, sizes))}\n"
+                  f"endian: little\nencoding: {encoding}\n\n")
+        return self.write(name, header.encode() + data)
+
+    def test_every_reader_refuses_it(self):
+        samples = struct.pack("<27f", *range(27))
+        good_gzip = gzip.compress(samples)
+        for name, arguments in (
+                ("missing", ["missing.nrrd"]), ("missing raw", ["missing.raw", "--dims", "3,3,3", "--type", "f32"]),
+                ("folder", ["."]), ("empty", [self.write("empty.nrrd", b"")]), ("empty vti", [self.write("empty.vti", b"")]),
+                ("empty npy", [self.write("empty.npy", b"")]), ("text", [self.write("text.nrrd", b"hello\n")]),
+                ("truncated", [self.nrrd("short.nrrd", [3, 3, 3], samples[:-1])]),
+                ("wrong sizes", [self.nrrd("sizes.nrrd", [3, 3, 4], samples)]),
+                ("no sizes", [self.nrrd("none.nrrd", [], samples)]),
+                ("zero size", [self.nrrd("zero.nrrd", [3, 0, 3], samples)]),
+                ("negative size", [self.nrrd("negative.nrrd", [3, -3, 3], samples)]),
+                ("overflow", [self.nrrd("overflow.nrrd", [2 ** 31, 2 ** 31, 2 ** 31], samples)]),
+                ("overflow to 0", [self.nrrd("wrap.nrrd", [2 ** 32, 2 ** 32], samples)]),
+                ("huge size", [self.nrrd("huge.nrrd", [3, 10 ** 30], samples)]),
+                ("no gzip", [self.nrrd("no.nrrd", [3, 3, 3], samples, "gzip")]),
+                ("bad gzip", [self.nrrd("bad.nrrd", [3, 3, 3], good_gzip[:20] + b"\xff" * 9 + good_gzip[29:], "gzip")]),
+                ("short gzip", [self.nrrd("cut.nrrd", [3, 3, 3], good_gzip[:-12], "gzip")]),
+                ("raw without dims", [self.write("some.raw", samples)]),
+                ("raw without type", ["some.raw", "--dims", "3,3,3"]),
+                ("raw too short", ["some.raw", "--dims", "3,3,4", "--type", "f32"]),
+                ("raw skip", ["some.raw", "--dims", "3,3,3", "--type", "f32", "--skip", "4"]),
+                ("raw overflow", ["some.raw", "--dims", "4294967296,4294967296,4294967296", "--type", "f64"]),
+                ("suffix", [self.write("some.xyz", samples)]),
+                ("steps that differ", [self.nrrd("a.nrrd", [3, 3, 3], samples), self.nrrd("b.nrrd", [3, 9], samples)])):
+            with self.subTest(name):
+                for verb in (["info"], ["extract", "--iso", "1", "-o", "out.vtu"], ["convert", "-o", "out.npy"],
+                             ["slice", "--iso", "1", "--time", "1", "-o", "out.ply"]):
+                    self.assert_refused(2, *verb, *arguments)
+
+    def test_meshes(self):
+        for path in (self.write("empty.ply", b""), self.write("empty.vtu", b""), self.write("text.stl", b"solid"),
+                     self.write("none.off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n"), "missing.vtp"):
+            self.assert_refused(2, "measure", path)
+            self.assert_refused(2, "slice", path, "--time", "0", "-o", "out.vtp")
+
+    def test_names_with_line_breaks_stay_one_line(self):
+        self.assert_refused(2, "info", "no\nsuch\x1b[31mfile.nrrd")
+
+
+class Output(Case):
+    def test_failure_leaves_what_was_there(self):
+        for name in ("out.vtu", "out.npy", "out_iso0.5.vtu"):
+            (self.folder / name).write_text("keep me")
+        (self.folder / "bad.nrrd").write_bytes(b"NRRD0004\ntype: float\ndimension: 3\nsizes: 3 3 3\nendian: little\nencoding: raw\n\nshort")
+        self.assert_refused(2, "extract", "bad.nrrd", "--iso", "1", "-o", "out.vtu")
+        self.assert_refused(2, "extract", self.sample(), "--iso", "nan", "-o", "out.vtu")
+        self.assert_refused(2, "convert", "bad.nrrd", "-o", "out.npy")
+
+    def test_unwritable_output_is_exit_code_1(self):
+        field = self.sample()
+        (self.folder / "folder.ply").mkdir()
+        for path in ("no/such/folder/a.ply", "folder.ply", "/proc/a.ply", f"{field}/a.ply"):
+            self.assert_refused(1, "extract", field, "--iso", "0.5", "-o", path)
+        for path in ("no/such/folder/a.npy", f"{field}/a.npy"):
+            self.assert_refused(1, "convert", field, "-o", path)
+            self.assert_refused(1, "sample", "ball", "--dims", "4,4", "-o", path)
+
+    # The second file cannot be written: the first must not appear either.
+    def test_several_files_appear_together_or_not_at_all(self):
+        field = self.sample()
+        (self.folder / "s_iso0.5.ply").mkdir()
+        self.assert_refused(1, "extract", field, "--iso", "0.4,0.5", "-o", "s.ply")
+        (self.folder / "m_0001.vtp").mkdir()
+        self.assert_refused(1, "slice", field, "--iso", "0.5", "--time", "0,0.1,0.2", "-o", "m.pvd")
+
+    def test_full_standard_output_is_exit_code_1(self):
+        for arguments in (["table", "2"], ["--help"], ["--version"], ["extract", WATER, "--iso", "0.5", "--json"]):
+            with open("/dev/full", "w", encoding="utf-8") as full:
+                run = subprocess.run([PROGRAM, *arguments], stdout=full, stderr=subprocess.PIPE, check=False)
+            self.assertEqual(run.returncode, 1, arguments)
+            self.assertRegex(run.stderr.decode(), r"\Ahyperiso: error: [^\n]+\n\Z")
+
+    def test_reader_that_leaves_is_no_error(self):
+        with subprocess.Popen([PROGRAM, "table", "4", "--counts"], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as run:
+            self.assertEqual(run.stdout.readline(), b"0\n")
+            run.stdout.close()
+            self.assertEqual(run.stderr.read(), b"")
+        self.assertEqual(run.returncode, 0)
+
+    def test_warnings_are_for_standard_error_and_can_be_turned_off(self):
+        field = self.sample()
+        run = Run("extract", field, "--iso", "7", "--json", "-o", "none.ply")
+        self.assertEqual((run.code, run.json()["simplices"]), (0, 0))
+        self.assertRegex(run.err, r"\Ahyperiso: warning: [^\n]+\n\Z")
+        self.assertTrue((self.folder / "none.ply").exists())
+        self.ok("extract", field, "--iso", "7", "--quiet")
+
+    def test_same_bytes_every_time_and_for_any_number_of_threads(self):
+        field = self.sample("torus-morph", "20,20,20,9")
+        contents = set()
+        for threads in ("1", "1", "2", "5"):
+            self.ok("extract", field, "--iso", "0.5", "-o", "a.vtu", "--threads", threads)
+            contents.add((self.folder / "a.vtu").read_bytes())
+        self.assertEqual(len(contents), 1)
+
+    def test_memory_limit_is_kept_and_named(self):
+        field = self.sample("noise", "20,20,20,9")
+        self.assert_refused(1, "extract", field, "--iso", "0.5", "--memory", "100K", words=["memory"])
+        self.assert_refused(1, "sample", "noise", "--dims", "20,20,20,9", "-o", "n.nrrd", "--memory", "100K", words=["memory"])
+        self.ok("extract", field, "--iso", "0.5", "--memory", "2G")
+
+    def test_huge_field_is_refused_not_attempted(self):
+        self.assert_refused(1, "sample", "ball", "--dims", "100000,100000,10000", "-o", "a.raw", words=["memory"])
+        self.assert_refused(2, "sample", "ball", "--dims", "4294967296,4294967296,4294967296", "-o", "a.raw")
+
+
+class Interruption(Case):
+    def interrupt(self, when, *arguments):
+        with subprocess.Popen([PROGRAM, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as run:
+            while run.poll() is None and not when():
+                time.sleep(0.001)
+            run.send_signal(signal.SIGINT)
+            out, err = run.communicate()
+        return run.returncode, out, err
+
+    def unfinished(self):
+        return any(name.endswith(".part") for name in self.files())
+
+    # Long enough to be caught in the act; had it ended, the exit code would be 0.
+    def test_ctrl_c_while_writing_leaves_no_file(self):
+        field = self.sample("noise", "40,40,40,12")
+        (self.folder / "out.vtu").write_text("keep me")
+        code, out, _ = self.interrupt(self.unfinished, "extract", field, "--iso", "0.5", "-o", "out.vtu")
+        self.assertEqual((code, out), (130, b""))
+        self.assertEqual(self.files(), [field, "out.vtu"])
+        self.assertEqual((self.folder / "out.vtu").read_text(), "keep me")
+
+    def test_ctrl_c_between_the_files_of_a_series_leaves_none(self):
+        field = self.sample("noise", "40,40,40,4")
+        times = ",".join(str(i / 1000) for i in range(900))
+        code, _, _ = self.interrupt(lambda: len(self.files()) > 3, "slice", field, "--iso", "0.5", "--time", times, "-o", "m.pvd")
+        self.assertEqual(code, 130)
+        self.assertEqual(self.files(), [field])
+
+    def test_ctrl_c_while_computing_leaves_no_file(self):
+        start = time.monotonic()
+        code, _, _ = self.interrupt(lambda: time.monotonic() > start + 0.2, "sample", "gyroid", "--dims", "300,300,300,20",
+                                    "-o", "a.raw")
+        self.assertEqual((code, self.files()), (130, []))
+
+
+class Selection(Case):
+    def test_crop_and_steps(self):
+        field = self.sample("ball", "10,9,8,7")
+        found = self.ok("info", field, "--json", "--crop", "2:8,,:4", "--steps", "3:").json()
+        self.assertEqual(found["dims"], [6, 9, 4, 4])
+        whole = self.ok("info", field, "--json").json()
+        self.assertEqual(found["axes"][3]["last"], whole["axes"][3]["last"])
+        self.assertAlmostEqual(found["axes"][0]["first"], whole["axes"][0]["first"] + 2 * whole["axes"][0]["spacing"])
+
+    def test_negative_numbers_are_values_not_options(self):
+        field = self.sample("gyroid", "12,12,12")
+        self.ok("extract", field, "--iso", "-0.5")
+        self.ok("extract", field, "--iso=-0.5,-.25,1e-1")
+        self.ok("slice", field, "--iso", "-0.5", "--time", "-0.25")
+        self.ok("slice", field, "--iso", "0.1", "--axis", "x=-0.25")
+
+    def test_time_axis_becomes_the_last(self):
+        field = self.sample("ball", "10,9,8,7")
+        self.assertEqual(self.ok("info", field, "--time-axis", "y", "--json").json()["dims"], [10, 8, 7, 9])
+        self.assertEqual(self.ok("info", field, "--time-axis", "0", "--json").json()["dims"], [9, 8, 7, 10])
+
+    def test_raw_files_are_described_by_options(self):
+        (self.folder / "a.raw").write_bytes(b"head" + struct.pack(">12h", *range(12)))
+        found = self.ok("info", "a.raw", "--dims", "4,3", "--type", "i16", "--skip", "4", "--big-endian", "--json").json()
+        self.assertEqual((found["dims"], found["range"]), ([4, 3], [0, 11]))
+
+    def test_files_as_steps(self):
+        for step in range(3):
+            (self.folder / f"{step}.raw").write_bytes(struct.pack("<8f", *range(step, step + 8)))
+        found = self.ok("info", "0.raw", "1.raw", "2.raw", "--dims", "2,2,2", "--type", "f32", "--json").json()
+        self.assertEqual((found["dims"], found["range"], found["has_time"]), ([2, 2, 2, 3], [0, 9], True))
+
+    def surface(self, path):
+        """The points of an .off file and its triangles, each from its lowest corner, in order."""
+        lines = (self.folder / path).read_text().split("\n")
+        points, triangles = (int(count) for count in lines[1].split()[:2])
+        corners = [tuple(map(int, line.split()[1:])) for line in lines[2 + points:2 + points + triangles]]
+        return lines[2:2 + points], sorted(c[c.index(min(c)):] + c[:c.index(min(c))] for c in corners)
+
+    # The cut of the mesh and the cut of the field are the same surface; at a step, to the bit.
+    def test_slice_of_mesh_and_of_field_agree(self):
+        field = self.sample("torus-morph", "16,16,16,9")
+        self.ok("extract", field, "--iso", "0.5", "-o", "all.vtu")
+        for time_ in ("0", "0.25", "0.3", "2"):
+            self.ok("slice", "all.vtu", "--time", time_, "-o", "mesh.off")
+            self.ok("slice", field, "--iso", "0.5", "--time", time_, "-o", "field.off")
+            counts = [self.ok("measure", path, "--json").json() for path in ("mesh.off", "field.off")]
+            self.assertEqual(counts[0]["vertices"], counts[1]["vertices"], time_)
+            self.assertEqual(counts[0]["measure"]["euler_characteristic"], counts[1]["measure"]["euler_characteristic"])
+            if time_ != "0.3":
+                self.assertEqual(self.surface("mesh.off"), self.surface("field.off"), time_)
+
+    def test_series_names_a_file_for_each_time(self):
+        field = self.sample("ball", "10,10,10,5")
+        self.ok("slice", field, "--iso", "0.5", "--time", "0,0.3,1", "-o", "m.pvd")
+        self.assertEqual(self.files(), ["field.nrrd", "m.pvd", "m_0000.vtp", "m_0001.vtp", "m_0002.vtp"])
+        series = (self.folder / "m.pvd").read_text()
+        self.assertEqual(re.findall(r'timestep="([^"]*)"', series), ["0", "0.3", "1"])
+        self.assertEqual(re.findall(r'file="([^"]*)"', series), ["m_0000.vtp", "m_0001.vtp", "m_0002.vtp"])
+
+
+class Manual(Case):
+    def test_lists_every_verb_and_option_within_80_columns(self):
+        manual = self.ok("--help").out
+        for verb in VERBS:
+            self.assertRegex(manual, rf"\n  {verb} +\w")
+        for arguments in ([], *([verb] for verb in VERBS)):
+            page = self.ok(*arguments, "--help").out
+            self.assertEqual(page, self.ok(*arguments, "-h").out)
+            self.assertLessEqual(max(map(len, page.splitlines())), 80)
+            self.assertIn("Examples:", page)
+        for option in ("--iso", "--method", "--inside", "--crop", "--steps", "--time-axis", "--variable", "--threads",
+                       "--memory", "--precision", "--output", "--format", "--measure", "--json", "--quiet", "--dims",
+                       "--type", "--skip", "--big-endian"):
+            self.assertRegex(self.ok("extract", "--help").out, rf"(?m)^  .*{option}\b", option)
+
+    def test_version(self):
+        self.assertRegex(self.ok("--version").out, r"\Ahyperiso \d+\.\d+\.\d+\n\Z")
+
+    def test_examples_run_as_written(self):
+        environment = dict(os.environ, PATH=f"{PROGRAM.parent}:{os.environ['PATH']}")
+        for arguments in ([], *([verb] for verb in VERBS)):
+            page = self.ok(*arguments, "--help").out
+            commands = page[page.index("Examples:"):].split("\n", 1)[1]
+            if arguments == ["table"]:
+                commands = commands.replace("table 4 --verify", "table 3 --verify")  # seconds of exact arithmetic
+            run = subprocess.run(["sh", "-e", "-c", commands], env=environment, capture_output=True, check=False)
+            self.assertEqual((run.returncode, run.stderr.decode()), (0, ""), arguments)
+
+
+if __name__ == "__main__":
+    unittest.main()
