@@ -20,4 +20,5 @@
 #include "hyperiso/step_source.hpp"
 #include "hyperiso/table.hpp"
 #include "hyperiso/track.hpp"
+#include "hyperiso/track_files.hpp"
 #include "hyperiso/view.hpp"

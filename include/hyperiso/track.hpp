@@ -28,6 +28,13 @@ enum class EventType {
 };
 const char* name_of(EventType type);
 
+/// How much of a component before an event is in one after it: paper 003's ratio between the last step before
+/// and the first step after it.
+struct TrackOverlap {
+  std::int64_t track_in = -1, track_out = -1;
+  double ratio = 0;
+};
+
 /// A node of the Reeb graph of time. Arcs and tracks are numbers in TrackingGraph.
 struct TrackingEvent {
   EventType type{};
@@ -36,12 +43,16 @@ struct TrackingEvent {
   std::vector<std::int64_t> arcs_in, arcs_out;
   std::vector<std::int64_t> tracks_in, tracks_out; ///< at a merge the surviving track stands in both
   std::int64_t delta_euler = 0; ///< change of the slice's Euler characteristic; 0 for open_start and open_end
+  std::vector<TrackOverlap> overlaps; ///< of those that are there at these steps
+  bool simplified = false;            ///< nothing happens here once simplified tracks are left out
 };
 
 /// A component between two events: it exists from the one to the other, and its topology does not change.
 struct TrackingArc {
   std::int64_t start_event = -1, end_event = -1;
   std::int64_t track = -1; ///< of its first part, where weak links cut it
+  double max_volume = 0;
+  double least_overlap = 1; ///< of its links; 1 if it has none
 };
 
 /// A component at a step: one row of features.csv.
@@ -84,10 +95,17 @@ struct Track {
   double max_volume = 0;
   std::int64_t family = -1; ///< smallest number of a track that events connect it with
   bool clipped = false;     ///< touched a wall of the domain
+  bool simplified = false;  ///< left out by `simplify`
 };
 
 /// The Reeb graph of time on the surface, in order of time; what is measured at steps; tracks through it.
 struct TrackingGraph {
+  /// The feature that the piece of the surface at a step belongs to whose first vertex lies on `edge`.
+  struct Piece {
+    GridEdge edge; ///< on the grid of the step
+    std::int64_t feature;
+  };
+
   std::vector<Axis> axes; ///< of the field, time last
   std::int64_t steps = 0;
   double isovalue = 0;
@@ -95,6 +113,7 @@ struct TrackingGraph {
   std::vector<TrackingArc> arcs;
   std::vector<Feature> features; ///< by step
   std::vector<FeatureLink> links;
+  std::vector<std::vector<Piece>> pieces; ///< of each step, by edge
   std::vector<Track> tracks;
 };
 
@@ -112,5 +131,24 @@ struct TrackOptions {
 /// The graph does not depend on the number of threads. Errors: those of `extract` and of the source;
 /// invalid_argument for fewer than two steps or a time axis that does not increase.
 Result<TrackingGraph> track(StepSource& source, double isovalue, const TrackOptions& options = {});
+
+/// Marks tracks as simplified: those that never reach `minimum_volume`, and those that last less than
+/// `minimum_duration` and are a leaf (one end is a birth, a death, or on a wall) or a loop (they split from
+/// the track that they merge into). Tracks cut by the first or last step are not judged by their duration.
+/// Events that are left with the same track before and after and none else are marked too. Nothing is removed
+/// and no number changes. Returns how many tracks are marked.
+std::int64_t simplify(TrackingGraph& graph, double minimum_volume, double minimum_duration);
+
+/// The graph as line segments in space: a point for each feature, at its centroid, and each event, at its
+/// position; lines along the arcs. Point data under the names that TTK uses for tracking graphs:
+/// SequenceIndex (the step, or -1 at events between steps), Time, Size (volume), BranchId (track), Type (of
+/// the event, as in EventType, or -1); line data BranchId and Overlap (1 at events).
+Mesh graph_mesh(const TrackingGraph& graph);
+
+/// The surface at a step with the tracks of its pieces: simplex data `track_id` and `family_id`, -1 where M
+/// has none. `step` is that step alone, as `source.read(k, k + 1)` gives it.
+/// Requires that `graph` came from the same field with the same options and with features measured.
+Result<Mesh> tracked_surface(const TrackingGraph& graph, const Field& step, std::int64_t number,
+                             const TrackOptions& options = {});
 
 } // namespace hyperiso

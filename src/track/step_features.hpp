@@ -11,6 +11,7 @@ namespace hyperiso::track_detail {
 // is, if it is closed, the one of them that it surrounds, else the inside one.
 struct SurfacePiece {
   std::size_t row = SIZE_MAX; // of the rows of the step
+  GridEdge first_edge = 0;    // of its vertices
   Region inside = 0, outside = 0;
   bool closed = true;
   double signed_volume = 0; // what this piece and its walls contribute to the volume of its inside region
@@ -44,6 +45,8 @@ class StepFeatures {
     add_samples();
     return std::move(features_);
   }
+
+  const std::vector<SurfacePiece>& pieces() const { return pieces_; }
 
   // The row of each component of the level, or SIZE_MAX.
   std::size_t row_of(std::size_t component) const { return row_of_component_[component]; }
@@ -131,6 +134,7 @@ class StepFeatures {
       piece_[vertex] = pieces_.size();
       SurfacePiece& piece = pieces_.emplace_back();
       piece.row = vertex_row_[vertex];
+      piece.first_edge = surface.edges[vertex];
       std::tie(piece.inside, piece.outside) = regions_beside(vertices_[vertex]);
     }
   }

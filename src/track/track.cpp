@@ -73,6 +73,10 @@ class TrackingRun {
     if (!surface) return surface.error();
     auto rows = std::make_unique<StepRows>(view, samples, last, isovalue_, extraction, level);
     add_features(step, rows->measure(*surface, level));
+    auto& pieces = graph_.pieces.emplace_back();
+    for (const SurfacePiece& piece : rows->pieces())
+      if (piece.row != SIZE_MAX)
+        pieces.push_back({piece.first_edge, first_row_ + static_cast<std::int64_t>(piece.row)});
     add_links(level, *rows);
     links_.restart();
     for (std::size_t component = 0; component < level.outcomes().size(); ++component)

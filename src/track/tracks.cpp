@@ -28,6 +28,7 @@ class TrackAssignment {
     for (Feature& row : graph_.features)
       if (row.event >= 0) row.track = track_at(row.event);
     summarize();
+    add_overlaps();
   }
 
  private:
@@ -114,11 +115,13 @@ class TrackAssignment {
   }
 
   bool is_weak(const TrackingEvent& event, std::int64_t in, std::int64_t out) const {
-    const auto row = row_of_event_.find(&event - graph_.events.data());
-    const bool at_step = row != row_of_event_.end();
-    const std::int64_t last = last_row(in);
-    const std::int64_t first = at_step ? static_cast<std::int64_t>(row->second) : first_row(out);
-    return weak_.contains({last, first});
+    const auto number = static_cast<std::size_t>(&event - graph_.events.data());
+    return weak_.contains({last_row(in), first_row_after(number, out)});
+  }
+  // The row of the event itself, if it is at a step, else the first of the arc that leaves it.
+  std::int64_t first_row_after(std::size_t event, std::int64_t out) const {
+    const auto at_step = row_of_event_.find(static_cast<std::int64_t>(event));
+    return at_step != row_of_event_.end() ? static_cast<std::int64_t>(at_step->second) : first_row(out);
   }
   std::int64_t first_row(std::int64_t arc) const {
     if (!arcs_[index(arc)].rows.empty()) return static_cast<std::int64_t>(arcs_[index(arc)].rows.front());
@@ -203,6 +206,31 @@ class TrackAssignment {
       for (auto* list : {&one.parents, &one.children}) {
         std::ranges::sort(*list);
         list->erase(std::unique(list->begin(), list->end()), list->end());
+      }
+    }
+  }
+
+  void add_overlaps() {
+    std::map<std::pair<std::int64_t, std::int64_t>, double> overlap;
+    for (const FeatureLink& link : graph_.links) overlap[{link.from, link.to}] = link.overlap;
+    for (std::size_t number = 0; number < graph_.events.size(); ++number) {
+      TrackingEvent& event = graph_.events[number];
+      for (std::size_t in = 0; in < event.arcs_in.size(); ++in)
+        for (std::size_t out = 0; out < event.arcs_out.size(); ++out) {
+          const auto found =
+              overlap.find({last_row(event.arcs_in[in]), first_row_after(number, event.arcs_out[out])});
+          if (found != overlap.end())
+            event.overlaps.push_back({event.tracks_in[in], event.tracks_out[out], found->second});
+        }
+    }
+    for (std::size_t number = 0; number < arcs_.size(); ++number) {
+      TrackingArc& arc = graph_.arcs[number];
+      const auto& rows = arcs_[number].rows;
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        arc.max_volume = std::max(arc.max_volume, graph_.features[rows[i]].volume);
+        if (i == 0) continue;
+        const auto found = overlap.find({rows[i - 1], rows[i]});
+        if (found != overlap.end()) arc.least_overlap = std::min(arc.least_overlap, found->second);
       }
     }
   }
