@@ -64,9 +64,9 @@ struct CellEdges {
   static constexpr std::array<CellEdge, across> across_edges =
       list<across>(true); // from the left to the right
 
-  // Slots for the vertex numbers of a cell's edges: those of the left column, half of those across, those of
-  // the right column, the other half. For D = 4 by hull these are two vectors of 16.
-  static constexpr unsigned half = across / 2;
+  // Slots for the vertex numbers of a cell's edges: those of the left column, some of those across, those of
+  // the right column, the rest. For D = 4 by hull these are two vectors of 16, for D = 3 one and a half of 8.
+  static constexpr unsigned half = M == Method::hull && D == 4 ? across / 2 : 0;
   static constexpr unsigned left_slot = 0, first_across_slot = in_column, right_slot = in_column + half,
                             second_across_slot = 2 * in_column + half;
   static constexpr unsigned slots = 2 * in_column + across;

@@ -14,6 +14,11 @@ enum class Instructions { baseline, avx2, avx512 };
 Instructions best_instructions();
 bool has_instructions(Instructions instructions);
 
+// Where the lower and the upper ends of edges lie.
+struct RowPair {
+  const std::byte *lower, *upper;
+};
+
 // Functions on one row of samples of one type. Rows become bit masks: bit x of word x / 64; the bits behind
 // the last sample are 0.
 struct RowKernels {
@@ -23,9 +28,10 @@ struct RowKernels {
   void (*present)(const std::byte* row, std::int64_t count, std::uint64_t* words);
   // Copies samples that lie `stride` apart next to each other.
   void (*gather)(const std::byte* row, std::int64_t stride, std::int64_t count, std::byte* gathered);
-  // values[i] = sample at[i] of a row whose samples lie `stride` apart.
-  void (*load)(const std::byte* row, std::int64_t stride, const std::uint32_t* at, std::size_t count,
-               double* values);
+  // lower[i], upper[i] = sample at[i] of both rows of pair pair[i]. Samples lie `stride` apart, the pairs
+  // `pair_bytes`.
+  void (*load)(const RowPair* pairs, std::size_t pair_bytes, const std::uint32_t* pair,
+               const std::uint32_t* at, std::int64_t stride, std::size_t count, double* lower, double* upper);
 };
 
 // Rows of samples (along axis 0), numbered in memory order.

@@ -249,14 +249,15 @@ void gather(const std::byte* row, std::int64_t stride, std::int64_t count, std::
 }
 
 template <class T>
-void load(const std::byte* row, std::int64_t stride, const std::uint32_t* at, std::size_t count,
-          double* values) {
-  const auto* samples = reinterpret_cast<const T*>(row);
-  if (stride == 1)
-    for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<double>(samples[at[i]]);
-  else
-    for (std::size_t i = 0; i < count; ++i)
-      values[i] = static_cast<double>(samples[static_cast<std::int64_t>(at[i]) * stride]);
+void load(const RowPair* pairs, std::size_t pair_bytes, const std::uint32_t* pair, const std::uint32_t* at,
+          std::int64_t stride, std::size_t count, double* lower, double* upper) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& rows =
+        *reinterpret_cast<const RowPair*>(reinterpret_cast<const std::byte*>(pairs) + pair[i] * pair_bytes);
+    const auto offset = static_cast<std::int64_t>(at[i]) * stride;
+    lower[i] = static_cast<double>(reinterpret_cast<const T*>(rows.lower)[offset]);
+    upper[i] = static_cast<double>(reinterpret_cast<const T*>(rows.upper)[offset]);
+  }
 }
 
 RowKernels row_kernels_here(SampleType type) {

@@ -6,32 +6,63 @@
 namespace hyperiso {
 namespace {
 
+#if defined(HYPERISO_AVX512)
+template <int Shift>
+__m512i exchange(__m512i word, std::uint64_t mask) {
+  const __m512i difference = _mm512_and_si512(_mm512_xor_si512(word, _mm512_srli_epi64(word, Shift)),
+                                              _mm512_set1_epi64(static_cast<long long>(mask)));
+  return _mm512_xor_si512(word, _mm512_xor_si512(difference, _mm512_slli_epi64(difference, Shift)));
+}
+#else
+// Exchanges the bits in `mask` with those `Shift` above them.
+template <int Shift>
+std::uint64_t exchange(std::uint64_t word, std::uint64_t mask) {
+  const std::uint64_t difference = (word ^ (word >> Shift)) & mask;
+  return word ^ difference ^ (difference << Shift);
+}
+// Exchanges the bits above `Shift` of each word with those in `mask` of the one `Block` behind it.
+template <int Block, int Shift>
+void exchange_bytes(std::array<std::uint64_t, 8>& m, std::uint64_t mask) {
+  for (unsigned r = 0; r < 8; ++r) {
+    if (r & Block) continue;
+    const std::uint64_t difference = ((m[r] >> Shift) ^ m[r | Block]) & mask;
+    m[r] ^= difference << Shift;
+    m[r | Block] ^= difference;
+  }
+}
+#endif
+
 // Row r of `rows` holds bit r of 64 columns; makes the columns: bit r of byte c is bit c of row r.
-void transpose(const std::array<std::uint64_t, 8>& rows, std::uint8_t* columns) {
+inline void transpose(const std::array<std::uint64_t, 8>& rows, std::uint8_t* columns) {
+  // First whole bytes: byte b of row r becomes byte r of word b. Then the same with the bits of each word, by
+  // exchanging ever larger blocks on both sides of the diagonal.
+#if defined(HYPERISO_AVX512)
+  alignas(64) static constexpr auto byte_order = [] {
+    std::array<std::uint8_t, 64> order{};
+    for (unsigned i = 0; i < 64; ++i) order[i] = static_cast<std::uint8_t>(i % 8 * 8 + i / 8);
+    return order;
+  }();
+  const __m512i m = _mm512_setr_epi64(static_cast<long long>(rows[0]), static_cast<long long>(rows[1]),
+                                      static_cast<long long>(rows[2]), static_cast<long long>(rows[3]),
+                                      static_cast<long long>(rows[4]), static_cast<long long>(rows[5]),
+                                      static_cast<long long>(rows[6]), static_cast<long long>(rows[7]));
+  __m512i words = _mm512_permutexvar_epi8(_mm512_load_si512(byte_order.data()), m);
+  words = exchange<7>(words, 0x00aa00aa00aa00aa);
+  words = exchange<14>(words, 0x0000cccc0000cccc);
+  words = exchange<28>(words, 0x00000000f0f0f0f0);
+  _mm512_storeu_si512(columns, words);
+#else
   std::array<std::uint64_t, 8> m = rows;
-  // Bytes: byte b of row r goes to byte r of row b, by exchanging ever smaller blocks off the diagonal.
-  const auto exchange = [&m](int block, int shift, std::uint64_t mask) {
-    for (int r = 0; r < 8; ++r) {
-      if (r & block) continue;
-      const std::uint64_t difference = ((m[r] >> shift) ^ m[r | block]) & mask;
-      m[r] ^= difference << shift;
-      m[r | block] ^= difference;
-    }
-  };
-  exchange(4, 32, 0x00000000ffffffff);
-  exchange(2, 16, 0x0000ffff0000ffff);
-  exchange(1, 8, 0x00ff00ff00ff00ff);
-  // Bits: the same inside each word of eight bytes.
+  exchange_bytes<4, 32>(m, 0x00000000ffffffff);
+  exchange_bytes<2, 16>(m, 0x0000ffff0000ffff);
+  exchange_bytes<1, 8>(m, 0x00ff00ff00ff00ff);
   for (std::uint64_t& word : m) {
-    const auto swap = [&word](int shift, std::uint64_t mask) {
-      const std::uint64_t difference = (word ^ (word >> shift)) & mask;
-      word ^= difference ^ (difference << shift);
-    };
-    swap(7, 0x00aa00aa00aa00aa);
-    swap(14, 0x0000cccc0000cccc);
-    swap(28, 0x00000000f0f0f0f0);
+    word = exchange<7>(word, 0x00aa00aa00aa00aa);
+    word = exchange<14>(word, 0x0000cccc0000cccc);
+    word = exchange<28>(word, 0x00000000f0f0f0f0);
   }
   std::memcpy(columns, m.data(), sizeof m);
+#endif
 }
 
 template <int D, Method M>
@@ -46,7 +77,7 @@ class Scan {
     }
     if (samples_.strides[0] != 1)
       gathered_.resize(static_cast<std::size_t>(grid_.dims[0]) * samples_.sample_size);
-    columns_.resize(static_cast<std::size_t>(64 * words_ + 1));
+    columns_.resize(static_cast<std::size_t>(64 * words_ + 64));
     active_.resize(static_cast<std::size_t>(words_));
     const std::int64_t rest = grid_.dims[0] % 64;
     last_word_bits_ = rest == 0 ? ~std::uint64_t{0} : (std::uint64_t{1} << rest) - 1;
@@ -96,6 +127,7 @@ class Scan {
   void end_result() {
     job_.result->end_run = cells_.runs.size();
     job_.result->active_cells = cells_.code_count - job_.result->first_code;
+    job_.result->simplices = count_simplices();
   }
   void flush_queue() {
     queue_.flush(*job_.batch);
@@ -112,10 +144,24 @@ class Scan {
       rest /= grid_.dims[axis];
     }
     window_row_ = row_in_layer - unit_.first_row + grid_.halo;
+    find_row();
+  }
+  // What follows from the index.
+  void find_row() {
+    row_samples_ = samples_.at(index_);
+    existing_ = 0;
+    for (int axis = 1; axis < D; ++axis) existing_ |= static_cast<unsigned>(index_[axis] > 0) << (axis - 1);
   }
   void advance() {
     ++row_, ++window_row_;
-    for (int axis = 1; axis < D - 1 && ++index_[axis] == grid_.dims[axis]; ++axis) index_[axis] = 0;
+    if constexpr (D > 2) {
+      row_samples_ += samples_.strides[1] * static_cast<std::int64_t>(samples_.sample_size);
+      existing_ |= 1;
+      if (++index_[1] < grid_.dims[1]) return;
+      index_[1] = 0;
+      for (int axis = 2; axis < D - 1 && ++index_[axis] == grid_.dims[axis]; ++axis) index_[axis] = 0;
+      find_row();
+    }
   }
   std::size_t parity() const { return static_cast<std::size_t>(index_[D - 1] & 1); }
 
@@ -134,7 +180,7 @@ class Scan {
   // Makes the mask of the current row. False: the field has NaN, against expectation.
   bool fill_mask() {
     std::uint64_t* mask = window_.masks[parity()].data() + window_row_ * words_;
-    const std::byte* row = samples_.at(index_);
+    const std::byte* row = row_samples_;
     if (samples_.strides[0] != 1) {
       job_.row_kernels->gather(row, samples_.strides[0], grid_.dims[0], gathered_.data());
       row = gathered_.data();
@@ -161,40 +207,40 @@ class Scan {
   // Crossed edges that end in the current row, active cells of which it is the top row.
   void examine_row() {
     begin_row_numbers();
-    unsigned existing = 0; // axes along which there is a row before this one
-    for (int axis = 1; axis < D; ++axis) existing |= static_cast<unsigned>(index_[axis] > 0) << (axis - 1);
     unsigned any = 0, all = 255;
     for (unsigned back = 0; back < places; ++back) {
-      if ((back & ~existing) != 0) continue;
-      any |= uniform_back(back), all &= uniform_back(back);
+      const unsigned uniform = uniform_back(back & existing_);
+      any |= uniform, all &= uniform;
     }
     if (any == 0 || all == 255) return;
     std::array<const std::uint64_t*, places> masks{};
     for (unsigned back = 0; back < places; ++back)
-      if ((back & ~existing) == 0) masks[back] = masks_back(back);
-    find_crossed_edges(existing, masks);
-    if (existing == top) find_active_cells(masks);
+      if ((back & ~existing_) == 0) masks[back] = masks_back(back);
+    find_crossed_edges(masks);
+    if (existing_ == top) find_active_cells(masks);
   }
 
   void begin_row_numbers() {
-    if (row_ % numbers_.plane_rows == 0) {
+    if (rows_left_in_plane_ == 0) {
+      rows_left_in_plane_ = numbers_.plane_rows;
       plane_vertices_ = 0;
       numbers_.plane_first[static_cast<std::size_t>(row_ / numbers_.plane_rows)] = job_.result->vertices;
     }
+    --rows_left_in_plane_;
   }
 
-  void find_crossed_edges(unsigned existing, const std::array<const std::uint64_t*, places>& masks) {
+  void find_crossed_edges(const std::array<const std::uint64_t*, places>& masks) {
     std::uint32_t* row_first = &numbers_.row_first[static_cast<std::size_t>(row_) * Edges::directions];
     const std::size_t before = queue_.size();
+    queue_.set_row(row_, index_, row_samples_);
     for (unsigned number = 0; number < Edges::directions; ++number) {
       const unsigned direction = Edges::direction(number), back = direction >> 1;
       row_first[number] = plane_vertices_ + static_cast<std::uint32_t>(queue_.size() - before);
-      if ((back & ~existing) != 0) continue;
-      queue_.begin_group(edge_group(direction));
+      if ((back & ~existing_) != 0) continue;
       std::uint64_t carry = 0; // of the shift by one sample; the first has none before it
       for (std::int64_t word = 0; word < words_; ++word)
         queue_.add(crossed_edges(direction, 0, masks[0], masks[back], word, carry), word);
-      queue_.end_group((back & last_axis) != 0);
+      queue_.end_group(direction, (back & last_axis) != 0);
     }
     const std::size_t found = queue_.size() - before;
     plane_vertices_ += static_cast<std::uint32_t>(found);
@@ -240,25 +286,12 @@ class Scan {
     return job_.present->words.data() + (row_ - rows_back) * words_;
   }
 
-  EdgeGroup<D> edge_group(unsigned direction) const {
-    EdgeGroup<D> group{};
-    group.direction = direction;
-    group.row = row_;
-    group.upper = index_;
-    group.upper_row = samples_.at(index_);
-    auto lower = index_;
-    for (int axis = 0; axis < D; ++axis) lower[axis] -= direction >> axis & 1;
-    group.lower_row = samples_.at(lower);
-    return group;
-  }
-
   void find_active_cells(const std::array<const std::uint64_t*, places>& masks) {
     const std::size_t first_code = cells_.code_count;
     if (!find_active_words(masks)) return;
     make_columns(masks);
-    if (first_code + static_cast<std::size_t>(grid_.dims[0]) > cells_.codes.size())
-      cells_.codes.resize(
-          std::max(2 * cells_.codes.size(), first_code + static_cast<std::size_t>(grid_.dims[0])));
+    const std::size_t most = first_code + static_cast<std::size_t>(64 * words_);
+    if (most > cells_.codes.size()) cells_.codes.resize(std::max(2 * cells_.codes.size(), most));
     if (job_.present->all() || row_of_cells_is_present()) {
       for (std::int64_t word = 0; word < words_; ++word) add_cells(active_[word], word);
       cells_.runs.push_back(
@@ -307,19 +340,35 @@ class Scan {
 
   // Appends the codes of the cells in `active`, a word of the row.
   void add_cells(std::uint64_t active, std::int64_t word) {
-    using Code = typename Cells<D>::Code;
     const Column* columns = columns_.data() + 64 * word;
-    Code* codes = cells_.codes.data();
-    std::size_t count = cells_.code_count;
-    std::uint64_t simplices = 0;
+    typename Cells<D>::Code* codes = cells_.codes.data() + cells_.code_count;
+    cells_.code_count += static_cast<std::size_t>(std::popcount(active));
+#if defined(HYPERISO_AVX512)
+    if constexpr (D == 4) {
+      const __m512i left = _mm512_maskz_compress_epi8(active, _mm512_loadu_si512(columns));
+      const __m512i right = _mm512_maskz_compress_epi8(active, _mm512_loadu_si512(columns + 1));
+      const __m512i low = _mm512_unpacklo_epi8(left, right), high = _mm512_unpackhi_epi8(left, right);
+      // Each holds 8 of every 16 codes: put them in order.
+      const __m512i first = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11),
+                    second = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
+      _mm512_storeu_si512(codes, _mm512_permutex2var_epi64(low, first, high));
+      _mm512_storeu_si512(codes + 32, _mm512_permutex2var_epi64(low, second, high));
+      return;
+    }
+#endif
     for (; active != 0; active &= active - 1) {
       const int x = std::countr_zero(active);
-      const auto code = static_cast<Code>(columns[x] | static_cast<Code>(columns[x + 1]) << places);
-      codes[count++] = code;
-      simplices += job_.table->count[code];
+      *codes++ = static_cast<typename Cells<D>::Code>(columns[x] | static_cast<std::uint32_t>(columns[x + 1])
+                                                                       << places);
     }
-    cells_.code_count = count;
-    job_.result->simplices += simplices;
+  }
+  // How many simplices the unit's cells hold.
+  std::uint64_t count_simplices() const {
+    std::uint64_t simplices = 0;
+    const std::uint8_t* count = job_.table->count.data();
+    for (std::size_t cell = job_.result->first_code; cell < cells_.code_count; ++cell)
+      simplices += count[cells_.codes[cell]];
+    return simplices;
   }
 
   bool row_of_cells_is_present() const {
@@ -385,6 +434,9 @@ class Scan {
 
   std::array<std::int64_t, D> index_{}; // of the current row's first sample
   std::int64_t row_ = 0, window_row_ = 0;
+  const std::byte* row_samples_ = nullptr;
+  unsigned existing_ = 0;               // axes along which there is a row before it, a set like a place
+  std::int64_t rows_left_in_plane_ = 0; // of VertexNumbers; units consist of whole planes
   std::uint32_t plane_vertices_ = 0;
 };
 
