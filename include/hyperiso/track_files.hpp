@@ -2,6 +2,7 @@
 /// \file
 /// Tracking graphs as files and texts.
 
+#include "hyperiso/io.hpp"
 #include "hyperiso/track.hpp"
 
 #include <filesystem>
@@ -20,8 +21,9 @@ namespace hyperiso {
 /// | volume.svg | volume against time, one line per track (paper 003 figure 8) |
 /// | napari_tracks.csv, napari_graph.json | for napari's tracks layer |
 ///
-/// Errors: file_unwritable, out_of_memory.
-Status write_tracking(const TrackingGraph& graph, const std::filesystem::path& directory);
+/// With a `group` the files take their places when it is committed. Errors: file_unwritable, out_of_memory.
+Status write_tracking(const TrackingGraph& graph, const std::filesystem::path& directory,
+                      FileGroup* group = nullptr);
 
 /// The contents of these files. Axis names stand in the names of columns.
 std::string tracks_csv(const TrackingGraph& graph);

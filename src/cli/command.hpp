@@ -21,6 +21,7 @@ struct Command {
 Command info_command(CLI::App& program);
 Command extract_command(CLI::App& program);
 Command slice_command(CLI::App& program);
+Command track_command(CLI::App& program);
 Command measure_command(CLI::App& program);
 Command table_command(CLI::App& program);
 Command sample_command(CLI::App& program);

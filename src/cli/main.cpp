@@ -75,8 +75,8 @@ int run(std::vector<std::string> arguments) {
   program.require_subcommand(1);
   set_manual(program, program_manual());
   const std::vector<Command> commands = {
-      info_command(program),  extract_command(program), slice_command(program),  measure_command(program),
-      table_command(program), sample_command(program),  convert_command(program)};
+      info_command(program),    extract_command(program), slice_command(program),  track_command(program),
+      measure_command(program), table_command(program),   sample_command(program), convert_command(program)};
   check_verb(program, arguments);
   try {
     std::ranges::reverse(arguments); // as CLI11 takes them

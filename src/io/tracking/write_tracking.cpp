@@ -1,5 +1,4 @@
 #include "core/text.hpp"
-#include "hyperiso/io.hpp"
 #include "hyperiso/track_files.hpp"
 #include "io/atomic_file.hpp"
 
@@ -8,16 +7,16 @@
 namespace hyperiso {
 namespace {
 
-Status write_text(const std::string& content, const std::filesystem::path& path) {
+Status write_text(const std::string& content, const std::filesystem::path& path, FileGroup* group) {
   auto file = AtomicFile::create(path);
   if (!file) return file.error();
   file->write(content);
-  return file->commit();
+  return file->commit(group);
 }
 
 } // namespace
 
-Status write_tracking(const TrackingGraph& graph, const std::filesystem::path& directory) {
+Status write_tracking(const TrackingGraph& graph, const std::filesystem::path& directory, FileGroup* group) {
   struct Output {
     const char* name;
     std::string (*content)(const TrackingGraph&);
@@ -41,9 +40,11 @@ Status write_tracking(const TrackingGraph& graph, const std::filesystem::path& d
       return Error{Code::file_unwritable,
                    text(directory.string(), ": cannot make this folder: ", failure.message())};
     for (const Output& output : outputs)
-      if (const Status written = write_text(output.content(graph), directory / output.name); !written)
+      if (const Status written = write_text(output.content(graph), directory / output.name, group); !written)
         return written.error();
-    return write_mesh(graph_mesh(graph), directory / "graph.vtu");
+    WriteMeshOptions options;
+    options.group = group;
+    return write_mesh(graph_mesh(graph), directory / "graph.vtu", options);
   } catch (const std::bad_alloc&) {
     return Error{Code::out_of_memory, text("no memory to write ", directory.string())};
   }
