@@ -3,33 +3,36 @@
 
     draw_series.py SERIES.pvd PICTURE.png TIME...
 
-Draws the surfaces of the series that are nearest to the given times. Exits with 3 where VTK's Python modules are
-missing, or there is no screen to draw on and no xvfb-run to make one.
+Draws the surfaces of the series that are nearest to the given times, in the box that holds them all, z up. Exits
+with 3 where VTK's Python modules are missing, or there is no screen to draw on and no xvfb-run to make one.
 """
 
 import os
 import shutil
+import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 try:
     import vtkmodules.vtkRenderingFreeType  # noqa: F401, draws the text
-    import vtkmodules.vtkRenderingOpenGL2  # noqa: F401, draws
     from vtkmodules.vtkCommonDataModel import vtkBoundingBox
     from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
     from vtkmodules.vtkFiltersSources import vtkOutlineSource, vtkPlaneSource
+    from vtkmodules.vtkFiltersCore import vtkImageAppend
     from vtkmodules.vtkIOImage import vtkPNGWriter
     from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
     from vtkmodules.vtkRenderingCore import (
-        vtkActor, vtkLightKit, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkTextActor, vtkWindowToImageFilter)
+        vtkActor, vtkLight, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkTextActor, vtkWindowToImageFilter)
+    from vtkmodules.vtkRenderingOpenGL2 import vtkRenderStepsPass, vtkSSAAPass, vtkSSAOPass
 except ImportError as error:
     print(f"draw_series: no picture: {error}", file=sys.stderr)
     sys.exit(3)
 
-PANEL = 480  # pixels, both ways
-WATER, UNDERSIDE = (0.20, 0.55, 0.85), (0.62, 0.78, 0.88)
-LINES, FLOOR, PAPER, INK = (0.55, 0.55, 0.58), (0.93, 0.93, 0.91), (1, 1, 1), (0.2, 0.2, 0.22)
+PANEL = 520  # pixels, both ways
+TOWARDS_EYE = (1.15, -1.9, 0.95)
+WATER, UNDERSIDE = (0.17, 0.52, 0.84), (0.50, 0.70, 0.82)
+LINES, FLOOR, WALL, PAPER, INK = (0.45, 0.46, 0.50), (0.86, 0.85, 0.82), (0.94, 0.94, 0.93), (1, 1, 1), (0.2, 0.2, 0.22)
 
 
 def read_series(path):
@@ -45,47 +48,51 @@ def read_surface(file):
     return reader.GetOutput()
 
 
+def actor_of(source, colour, ambient, diffuse):
+    mapper = vtkPolyDataMapper()
+    mapper.SetInputConnection(source.GetOutputPort())
+    mapper.ScalarVisibilityOff()
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetColor(colour)
+    actor.GetProperty().SetAmbient(ambient)
+    actor.GetProperty().SetDiffuse(diffuse)
+    return actor
+
+
 def surface_actor(surface):
     normals = vtkPolyDataNormals()
     normals.SetInputData(surface)
     normals.SplittingOff()
     normals.ConsistencyOff()  # the triangles are oriented as they are meant to be
-    mapper = vtkPolyDataMapper()
-    mapper.SetInputConnection(normals.GetOutputPort())
-    mapper.ScalarVisibilityOff()
-    actor = vtkActor()
-    actor.SetMapper(mapper)
-    actor.GetProperty().SetColor(WATER)
+    actor = actor_of(normals, WATER, 0.22, 0.85)
     actor.GetProperty().SetSpecular(0.35)
-    actor.GetProperty().SetSpecularPower(40)
+    actor.GetProperty().SetSpecularPower(30)
     underside = actor.MakeProperty()
     underside.SetColor(UNDERSIDE)
+    underside.SetAmbient(0.3)
     actor.SetBackfaceProperty(underside)
     return actor
 
 
-def flat_actor(source, colour):
-    mapper = vtkPolyDataMapper()
-    mapper.SetInputConnection(source.GetOutputPort())
-    actor = vtkActor()
-    actor.SetMapper(mapper)
-    actor.GetProperty().SetColor(colour)
-    actor.GetProperty().LightingOff()
-    return actor
+def plane(origin, point1, point2):
+    source = vtkPlaneSource()
+    source.SetOrigin(origin)
+    source.SetPoint1(point1)
+    source.SetPoint2(point2)
+    return source
 
 
-def box_actor(bounds):
+def box_actors(bounds):
+    """The floor, the two walls at the back, and all edges."""
+    x0, x1, y0, y1, z0, z1 = bounds
     outline = vtkOutlineSource()
     outline.SetBounds(bounds)
-    return flat_actor(outline, LINES)
-
-
-def floor_actor(bounds):
-    floor = vtkPlaneSource()
-    floor.SetOrigin(bounds[0], bounds[2], bounds[4])
-    floor.SetPoint1(bounds[1], bounds[2], bounds[4])
-    floor.SetPoint2(bounds[0], bounds[3], bounds[4])
-    return flat_actor(floor, FLOOR)
+    edges = actor_of(outline, LINES, 1, 0)
+    edges.GetProperty().SetLineWidth(1.5)
+    return [actor_of(plane((x0, y0, z0), (x1, y0, z0), (x0, y1, z0)), FLOOR, 0.8, 0.2),
+            actor_of(plane((x0, y0, z0), (x0, y1, z0), (x0, y0, z1)), WALL, 0.8, 0.2),
+            actor_of(plane((x0, y1, z0), (x1, y1, z0), (x0, y1, z1)), WALL, 0.8, 0.2), edges]
 
 
 def title(text):
@@ -97,25 +104,69 @@ def title(text):
     return actor
 
 
-def panel(surface, bounds, text):
-    renderer = vtkRenderer()
-    renderer.SetBackground(PAPER)
-    renderer.AddActor(surface_actor(surface))
-    renderer.AddActor(box_actor(bounds))
-    renderer.AddActor(floor_actor(bounds))
-    renderer.AddActor2D(title(text))
+def light(direction, intensity):
+    source = vtkLight()
+    source.SetLightTypeToSceneLight()
+    source.SetPosition(direction)
+    source.SetIntensity(intensity)
+    return source
+
+
+def set_camera(renderer, bounds):
     centre = [(bounds[2 * k] + bounds[2 * k + 1]) / 2 for k in range(3)]
     size = max(bounds[2 * k + 1] - bounds[2 * k] for k in range(3))
     camera = renderer.GetActiveCamera()
     camera.SetFocalPoint(centre)
-    camera.SetPosition(centre[0] + 1.15 * size, centre[1] - 1.9 * size, centre[2] + 0.95 * size)
+    camera.SetPosition([c + size * d for c, d in zip(centre, TOWARDS_EYE)])
     camera.SetViewUp(0, 0, 1)
     renderer.ResetCamera(bounds)
     camera.Zoom(1.08)
-    lights = vtkLightKit()
-    lights.SetKeyLightAngle(40, -35)  # above, to the left
-    lights.AddLightsToRenderer(renderer)
-    return renderer
+
+
+def set_shading(renderer, bounds):
+    """Light from above, and darkness where surfaces are close to each other, which shows their depth."""
+    renderer.AutomaticLightCreationOff()
+    renderer.AddLight(light((0.5, -1.5, 3), 0.75))
+    renderer.AddLight(light((2.5, -1, 0.6), 0.35))
+    size = max(bounds[2 * k + 1] - bounds[2 * k] for k in range(3))
+    occlusion = vtkSSAOPass()
+    occlusion.SetRadius(0.25 * size)
+    occlusion.SetBias(0.01 * size)
+    occlusion.SetKernelSize(256)
+    occlusion.BlurOn()
+    occlusion.SetDelegatePass(vtkRenderStepsPass())
+    smooth = vtkSSAAPass()
+    smooth.SetDelegatePass(occlusion)
+    renderer.SetPass(smooth)
+
+
+def panel(surface, bounds, text):
+    """One moment as an image. Occlusion needs a window of its own."""
+    renderer = vtkRenderer()
+    renderer.SetBackground(PAPER)
+    for actor in [surface_actor(surface), *box_actors(bounds)]:
+        renderer.AddActor(actor)
+    renderer.AddActor2D(title(text))
+    set_camera(renderer, bounds)
+    set_shading(renderer, bounds)
+    window = vtkRenderWindow()
+    window.SetOffScreenRendering(True)
+    window.SetSize(PANEL, PANEL)
+    window.AddRenderer(renderer)
+    image = vtkWindowToImageFilter()
+    image.SetInput(window)
+    image.ReadFrontBufferOff()
+    image.Update()
+    return image.GetOutput()
+
+
+def joined(images, axis):
+    append = vtkImageAppend()
+    append.SetAppendAxis(axis)
+    for image in images:
+        append.AddInputData(image)
+    append.Update()
+    return append.GetOutput()
 
 
 def draw(entries, picture):
@@ -125,37 +176,36 @@ def draw(entries, picture):
         box.AddBounds(surface.GetBounds())
     bounds = [0.0] * 6
     box.GetBounds(bounds)
-
-    columns = min(3, len(surfaces))
-    rows = -(-len(surfaces) // columns)
-    window = vtkRenderWindow()
-    window.SetOffScreenRendering(True)
-    window.SetMultiSamples(8)
-    window.SetSize(columns * PANEL, rows * PANEL)
-    for number, (time, surface) in enumerate(surfaces):
-        column, row = number % columns, rows - 1 - number // columns
-        renderer = panel(surface, bounds, f"t = {time:g}")
-        renderer.SetViewport(column / columns, row / rows, (column + 1) / columns, (row + 1) / rows)
-        window.AddRenderer(renderer)
-
-    image = vtkWindowToImageFilter()
-    image.SetInput(window)
-    image.ReadFrontBufferOff()
+    panels = [panel(surface, bounds, f"t = {time:g}") for time, surface in surfaces]
+    columns = min(3, len(panels))
+    rows = [joined(panels[start:start + columns], 0) for start in range(0, len(panels), columns)]
     writer = vtkPNGWriter()
     writer.SetFileName(str(picture))
-    writer.SetInputConnection(image.GetOutputPort())
+    writer.SetInputData(joined(rows[::-1], 1))  # images are counted from below
     writer.Write()
+
+
+def draw_on_a_screen_made_for_it():
+    """Runs this program again under xvfb-run; VTK as Debian builds it ends the process where there is no screen.
+
+    Now and then the screen is not there yet, or another program takes it, and the process is aborted (134).
+    """
+    if not shutil.which("xvfb-run"):
+        print("draw_series: no picture: there is no screen, and no xvfb-run to make one", file=sys.stderr)
+        return 3
+    for _ in range(3):
+        run = subprocess.run(["xvfb-run", "-a", sys.executable, *sys.argv], stderr=subprocess.PIPE, check=False)
+        if run.returncode < 128:
+            break
+    sys.stderr.buffer.write(run.stderr)
+    return run.returncode if run.returncode < 128 else 3
 
 
 def main():
     if len(sys.argv) < 4:
         sys.exit(__doc__)
     if not os.environ.get("DISPLAY"):
-        # VTK as Debian builds it ends the process where there is no screen.
-        if not shutil.which("xvfb-run"):
-            print("draw_series: no picture: there is no screen, and no xvfb-run to make one", file=sys.stderr)
-            return 3
-        os.execvp("xvfb-run", ["xvfb-run", "-a", sys.executable, *sys.argv])
+        return draw_on_a_screen_made_for_it()
     series = read_series(Path(sys.argv[1]))
     times = [float(time) for time in sys.argv[3:]]
     draw([min(series, key=lambda entry: abs(entry[0] - time)) for time in times], Path(sys.argv[2]))
