@@ -14,6 +14,7 @@ class UnionFind {
     std::iota(parent_.begin(), parent_.end(), std::uint64_t{0});
   }
 
+  std::uint64_t size() const { return parent_.size(); }
   std::uint64_t add() {
     parent_.push_back(parent_.size());
     return parent_.back();

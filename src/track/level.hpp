@@ -10,14 +10,13 @@ namespace hyperiso::track_detail {
 template <int C>
 class Level {
  public:
-  Level(Sweep<C>* lower, Sweep<C>* upper)
-      : lower_(lower), upper_(upper), vertex_count_(number_vertices()), united_(vertex_count_) {
-    unite_across_slabs();
-    if (lower_) unite_in(*lower_, 1.0, lower_places_);
-    if (upper_) unite_in(*upper_, 0.0, upper_places_);
-    number_components();
-    if (lower_) strands_in_ = strands_of(*lower_, 1.0, lower_places_);
-    if (upper_) strands_out_ = strands_of(*upper_, 0.0, upper_places_);
+  Level(Sweep<C>* lower, Sweep<C>* upper) : lower_(lower), upper_(upper) {
+    if (upper_ && upper_->plain_below() && (!lower_ || lower_->plain_above()))
+      follow_strands();
+    else
+      find_components();
+    if (lower_) lower_vertices_ = vertices_of_special(lower_places_);
+    if (upper_) upper_vertices_ = vertices_of_special(upper_places_);
   }
 
   // What a component became: an arc that passes, or an event; neither where no track is.
@@ -54,14 +53,49 @@ class Level {
       if (const auto vertex = find(upper_->slab, edge)) return component_[upper_places_[*vertex]];
     }
     if (lower_) {
-      if (const auto vertex = find(lower_->slab, edge + lower_->slab.step_offset))
-        return component_[lower_places_[*vertex]];
+      const auto vertex = find(lower_->slab, edge + lower_->slab.step_offset);
+      if (vertex && !lower_places_.empty()) return component_[lower_places_[*vertex]];
     }
     return std::nullopt;
   }
 
  private:
   static constexpr std::uint32_t none = UINT32_MAX;
+
+  // Where the slices below, at and above the step are alike: the components are the strands that begin here.
+  void follow_strands() {
+    const Slab<C>& slab = upper_->slab;
+    upper_places_.assign(slab.times.size(), none);
+    std::vector<std::uint32_t> number(slab.times.size(), none); // of components by strand
+    for (Vertex vertex = 0; vertex < slab.times.size() && slab.times[vertex] == 0; ++vertex) {
+      const std::uint64_t strand = upper_->strand_at_lower_step(vertex);
+      if (number[strand] == none) {
+        number[strand] = static_cast<std::uint32_t>(outcomes_.size());
+        outcomes_.emplace_back();
+        plain_.push_back(lower_ != nullptr);
+        strands_out_.push_back({strand});
+        if (lower_) strands_in_.push_back({strand_below(slab.edges[vertex])});
+      }
+      upper_places_[vertex] = vertex;
+      component_.push_back(number[strand]);
+    }
+  }
+  std::uint64_t strand_below(GridEdge edge) {
+    const Slab<C>& slab = lower_->slab;
+    const Vertex twin = *find(slab, edge + slab.step_offset);
+    return lower_->strand_of(slab.stars.of(twin)[0]);
+  }
+
+  void find_components() {
+    vertex_count_ = number_vertices();
+    UnionFind united(vertex_count_);
+    unite_across_slabs(united);
+    if (lower_) unite_in(*lower_, 1.0, lower_places_, united);
+    if (upper_) unite_in(*upper_, 0.0, upper_places_, united);
+    number_components(united);
+    if (lower_) strands_in_ = strands_of(*lower_, 1.0, lower_places_);
+    if (upper_) strands_out_ = strands_of(*upper_, 0.0, upper_places_);
+  }
 
   // Gives the vertices at this step places 0, 1, ... and says how many.
   std::size_t number_vertices() {
@@ -83,7 +117,7 @@ class Level {
   }
 
   // A vertex within the step is in both slabs, unless cells without data are on one side of it.
-  void unite_across_slabs() {
+  void unite_across_slabs(UnionFind& united) {
     paired_.assign(vertex_count_, false);
     if (!lower_ || !upper_) return;
     const Slab<C>&below = lower_->slab, &above = upper_->slab;
@@ -93,12 +127,13 @@ class Level {
       const GridEdge edge = below.edges[vertex] - below.step_offset;
       while (other < above.edges.size() && above.edges[other] < edge) ++other;
       if (other == above.edges.size() || above.edges[other] != edge) continue;
-      united_.unite(lower_places_[vertex], upper_places_[other]);
+      united.unite(lower_places_[vertex], upper_places_[other]);
       paired_[lower_places_[vertex]] = paired_[upper_places_[other]] = true;
     }
   }
 
-  void unite_in(const Sweep<C>& sweep, double time, const std::vector<std::uint32_t>& places) {
+  static void unite_in(const Sweep<C>& sweep, double time, const std::vector<std::uint32_t>& places,
+                       UnionFind& united) {
     for (SimplexNumber number = 0; number < sweep.slab.simplex_count(); ++number) {
       std::uint32_t first = none;
       for (const Vertex vertex : sweep.slab.simplex(number)) {
@@ -106,15 +141,15 @@ class Level {
         if (first == none)
           first = places[vertex];
         else
-          united_.unite(first, places[vertex]);
+          united.unite(first, places[vertex]);
       }
     }
   }
 
-  void number_components() {
+  void number_components(UnionFind& united) {
     component_.resize(vertex_count_);
     for (std::size_t place = 0; place < component_.size(); ++place) {
-      const std::uint64_t root = united_.find(place);
+      const std::uint64_t root = united.find(place);
       if (root == place) {
         component_[place] = outcomes_.size();
         outcomes_.emplace_back();
@@ -124,8 +159,6 @@ class Level {
       }
       if (!paired_[place]) plain_[component_[place]] = false;
     }
-    if (lower_) lower_vertices_ = vertices_of_special(lower_places_);
-    if (upper_) upper_vertices_ = vertices_of_special(upper_places_);
   }
 
   std::vector<std::vector<Vertex>> vertices_of_special(const std::vector<std::uint32_t>& places) const {
@@ -140,12 +173,13 @@ class Level {
   std::vector<std::vector<std::uint64_t>> strands_of(Sweep<C>& sweep, double time,
                                                      const std::vector<std::uint32_t>& places) {
     std::vector<std::vector<std::uint64_t>> strands(outcomes_.size());
-    std::set<std::uint64_t> seen;
+    std::vector<bool> seen(sweep.strand_count());
     for (SimplexNumber number = 0; number < sweep.slab.simplex_count(); ++number) {
       const auto [first, last] = sweep.slab.time_range(number);
       if (first == last || (time == 0 ? first : last) != time) continue;
       const std::uint64_t strand = sweep.strand_of(number);
-      if (!seen.insert(strand).second) continue;
+      if (seen[strand]) continue;
+      seen[strand] = true;
       for (const Vertex vertex : sweep.slab.simplex(number))
         if (places[vertex] != none) {
           strands[component_[places[vertex]]].push_back(strand);
@@ -293,8 +327,7 @@ class Level {
 
   Sweep<C>*lower_, *upper_;
   std::vector<std::uint32_t> lower_places_, upper_places_; // of each vertex of the slabs, or none
-  std::size_t vertex_count_;                               // of both, = places
-  UnionFind united_;                                       // places
+  std::size_t vertex_count_ = 0;                           // of both, = places
   std::vector<bool> paired_;                               // places: the vertex is in both slabs
   std::vector<std::size_t> component_;                     // of each place
   std::vector<bool> plain_; // components: the same on both sides, so that nothing can happen there

@@ -49,6 +49,8 @@ struct Slab {
   std::vector<Vertex> corners; // C of each simplex
   Stars stars;
   bool has_missing = false; // samples
+  bool ties_below = false;  // a vertex at the lower step that is not on an edge within it
+  bool ties_above = false;  // the same at the upper step
   GridEdge row_length = 1;  // samples along axis 0
   GridEdge step_offset = 0; // from the number of an edge within the lower step to that within the upper one
   std::function<Place(GridEdge)> place; // also of an edge within the lower step that M does not cross
@@ -78,8 +80,6 @@ class SlabSamples {
   SlabSamples(const FieldView<const T, D>& field, double isovalue)
       : field_(field), dims_(field.dims()), isovalue_(isovalue) {}
 
-  bool in_step(GridEdge edge) const { return !(edge / row_length() >> (D - 1) & 1); }
-
   GridEdge step_offset() const {
     GridEdge rows = 1;
     for (int axis = 1; axis < D - 1; ++axis) rows *= static_cast<GridEdge>(dims_[axis]);
@@ -90,10 +90,8 @@ class SlabSamples {
     return crossing(static_cast<double>(field_.at(ends.lower)), static_cast<double>(field_.at(ends.upper)),
                     isovalue_);
   }
-  double time(GridEdge edge) const {
-    const auto ends = grid_edge_ends<D>(dims_, edge);
-    return in_step(edge) ? static_cast<double>(ends.upper[D - 1]) : weight(ends);
-  }
+  // Of a crossing between the steps.
+  double time(GridEdge edge) const { return weight(grid_edge_ends<D>(dims_, edge)); }
 
   Place place(GridEdge edge) const {
     const auto ends = grid_edge_ends<D>(dims_, edge);
@@ -126,19 +124,8 @@ class SlabSamples {
 };
 
 template <class T, int D>
-bool has_missing_samples(const FieldView<const T, D>& field) {
-  if constexpr (std::is_floating_point_v<T>) {
-    std::array<std::int64_t, D> index{};
-    for (std::int64_t rest = field.grid.samples(); rest > 0; --rest) {
-      if (is_missing(field.at(index))) return true;
-      for (int axis = 0; axis < D && ++index[axis] == field.dims()[axis]; ++axis) index[axis] = 0;
-    }
-  }
-  return false;
-}
-
-template <class T, int D>
-Result<Slab<D>> make_slab(const SlabSamples<T, D>& samples, double isovalue, ExtractOptions options) {
+Result<Slab<D>> make_slab(const SlabSamples<T, D>& samples, double isovalue, bool has_missing,
+                          ExtractOptions options) {
   options.keep_edges = true;
   options.precision = Precision::f32;
   auto mesh = extract(samples.field(), isovalue, options);
@@ -147,16 +134,24 @@ Result<Slab<D>> make_slab(const SlabSamples<T, D>& samples, double isovalue, Ext
     return Error{Code::out_of_memory, "the surface between two steps has more than 2^32 corners"};
   Slab<D> slab;
   slab.edges = std::move(mesh->edges);
+  slab.row_length = samples.row_length();
+  slab.step_offset = samples.step_offset();
   slab.times.resize(slab.edges.size());
-  for (std::size_t vertex = 0; vertex < slab.times.size(); ++vertex)
-    slab.times[vertex] = samples.time(slab.edges[vertex]);
+  for (Vertex vertex = 0; vertex < slab.times.size(); ++vertex) {
+    const GridEdge edge = slab.edges[vertex];
+    if (slab.in_step(vertex)) {
+      slab.times[vertex] = edge < slab.step_offset ? 0 : 1;
+    } else {
+      slab.times[vertex] = samples.time(edge);
+      slab.ties_below |= slab.times[vertex] == 0;
+      slab.ties_above |= slab.times[vertex] == 1;
+    }
+  }
   slab.corners.resize(mesh->simplices.size());
   for (std::size_t corner = 0; corner < slab.corners.size(); ++corner)
     slab.corners[corner] = static_cast<Vertex>(mesh->simplices[corner]);
   slab.stars.build(slab.corners, D, slab.edges.size());
-  slab.has_missing = has_missing_samples(samples.field());
-  slab.row_length = samples.row_length();
-  slab.step_offset = samples.step_offset();
+  slab.has_missing = has_missing;
   slab.place = [samples](GridEdge edge) { return samples.place(edge); };
   slab.place_of_upper_end = [samples](GridEdge edge) { return samples.place_of_upper_end(edge); };
   return slab;

@@ -1,10 +1,10 @@
 #pragma once
 // Two consecutive steps of a source in memory.
 
-#include "core/text.hpp"
+#include "core/sign.hpp"
 #include "hyperiso/step_source.hpp"
 
-#include <algorithm>
+#include <span>
 
 namespace hyperiso::track_detail {
 
@@ -28,8 +28,15 @@ class StepWindow {
       for (std::int64_t x = 0; x < view.grid.axes[0].count; ++x) *to++ = row[x * view.strides[0]];
       for (int axis = 1; axis < D && ++index[axis] == view.grid.axes[axis].count; ++axis) index[axis] = 0;
     }
+    const std::span<const T> read(samples_.data() + step % 2 * step_samples_,
+                                  static_cast<std::size_t>(step_samples_));
+    bool missing = false;
+    for (const T sample : read) missing |= is_missing(sample);
+    has_missing_[step % 2] = missing;
     return {};
   }
+  // Whether a sample of the two steps is missing.
+  bool has_missing() const { return has_missing_[0] || has_missing_[1]; }
 
   // Steps `first` and `first` + 1, both read.
   FieldView<const T, D> slab(std::int64_t first) const {
@@ -50,6 +57,7 @@ class StepWindow {
   std::vector<Axis> axes_;
   std::int64_t step_samples_;
   std::vector<T> samples_; // even steps, then odd ones
+  std::array<bool, 2> has_missing_{};
 };
 
 } // namespace hyperiso::track_detail

@@ -3,10 +3,11 @@
 
 #include "core/union_find.hpp"
 #include "track/graph_builder.hpp"
+#include "track/link_test.hpp"
 #include "track/slice_search.hpp"
 
 #include <map>
-#include <numeric>
+#include <optional>
 #include <set>
 
 namespace hyperiso::track_detail {
@@ -18,24 +19,34 @@ template <int C>
 class Sweep {
  public:
   Sweep(Slab<C> slab_, double lower_time, double upper_time)
-      : slab(std::move(slab_)), lower_time_(lower_time), upper_time_(upper_time),
-        strands_(slab.simplex_count()), labels_(slab.simplex_count()) {
-    std::iota(labels_.begin(), labels_.end(), SimplexNumber{0});
+      : slab(std::move(slab_)), lower_time_(lower_time), upper_time_(upper_time), strands_(slab.times.size()),
+        labels_(slab.simplex_count()), link_(slab.times.size()) {
+    if (!plain_below()) part_ways_at_lower_step();
     unite_at_lower_step();
   }
 
   Slab<C> slab;
 
+  // Whether the slices at the lower (upper) step and next to it are alike: then each vertex there has one
+  // strand.
+  bool plain_below() const { return !slab.has_missing && !slab.ties_below; }
+  bool plain_above() const { return !slab.has_missing && !slab.ties_above; }
+
+  // Requires plain_below() and a vertex at the lower step.
+  std::uint64_t strand_at_lower_step(Vertex vertex) { return strands_.find(vertex); }
+  std::uint64_t strand_count() const { return strands_.size(); }
   std::uint64_t strand_of(SimplexNumber simplex) { return strands_.find(labels_[simplex]); }
   std::int64_t arc_of(std::uint64_t strand) const { return arcs_.at(strand); }
   void set_arc(std::uint64_t strand, std::int64_t arc) { arcs_[strand] = arc; }
 
   // Goes through the inside of the slab. Requires an arc for each strand at the lower step.
   void run(GraphBuilder& graph) {
-    std::vector<Vertex> inner;
+    std::vector<std::pair<double, Vertex>> by_time;
     for (Vertex vertex = 0; vertex < slab.times.size(); ++vertex)
-      if (slab.times[vertex] > 0 && slab.times[vertex] < 1) inner.push_back(vertex);
-    std::ranges::stable_sort(inner, {}, [&](Vertex vertex) { return slab.times[vertex]; });
+      if (slab.times[vertex] > 0 && slab.times[vertex] < 1) by_time.emplace_back(slab.times[vertex], vertex);
+    std::ranges::sort(by_time);
+    std::vector<Vertex> inner;
+    for (const auto& [time, vertex] : by_time) inner.push_back(vertex);
     for (std::size_t begin = 0; begin < inner.size();) {
       std::size_t end = begin + 1;
       while (end < inner.size() && slab.times[inner[end]] == slab.times[inner[begin]]) ++end;
@@ -57,26 +68,42 @@ class Sweep {
   };
 
   // Just after the lower step, simplices belong together that share an edge from a vertex there to one above.
-  void unite_at_lower_step() {
-    std::vector<SimplexNumber> first_with(slab.times.size());
-    std::vector<Vertex> met_from(slab.times.size(), UINT32_MAX);
+  // The strand of a vertex has its number; where its edges fall into several pieces, the others get new ones.
+  void part_ways_at_lower_step() {
     for (Vertex vertex = 0; vertex < slab.times.size(); ++vertex) {
       if (slab.times[vertex] != 0) continue;
-      for (const SimplexNumber simplex : slab.stars.of(vertex))
-        for (const Vertex other : slab.simplex(simplex)) {
-          if (slab.times[other] == 0) continue;
-          if (met_from[other] == vertex) {
-            strands_.unite(simplex, first_with[other]);
-          } else {
-            met_from[other] = vertex;
-            first_with[other] = simplex;
-          }
-        }
+      const Side after = sides_.find(slab, slab.stars.of(vertex), 0, Direction::after,
+                                     [&](Vertex other) { return other == vertex; });
+      for (std::size_t piece = 1; piece < after.components.size(); ++piece) {
+        const std::uint64_t strand = strands_.add();
+        for (const SimplexNumber simplex : after.components[piece]) parted_[{vertex, simplex}] = strand;
+      }
+    }
+  }
+
+  void unite_at_lower_step() {
+    for (SimplexNumber simplex = 0; simplex < labels_.size(); ++simplex) {
+      const auto corners = slab.simplex(simplex);
+      if (std::all_of(corners.begin(), corners.end(), [&](Vertex v) { return slab.times[v] == 0; })) continue;
+      std::optional<std::uint64_t> first;
+      for (const Vertex vertex : corners) {
+        if (slab.times[vertex] != 0) continue;
+        std::uint64_t strand = vertex;
+        if (!parted_.empty())
+          if (const auto parted = parted_.find({vertex, simplex}); parted != parted_.end())
+            strand = parted->second;
+        if (first)
+          strands_.unite(*first, strand);
+        else
+          first = strand;
+      }
+      if (first) labels_[simplex] = static_cast<SimplexNumber>(*first);
     }
   }
 
   void pass_moment(std::span<const Vertex> vertices, GraphBuilder& graph) {
     const double moment = slab.times[vertices[0]];
+    if (vertices.size() == 1 && link_.is_regular(slab, vertices[0])) return pass_regular(vertices[0]);
     std::vector<Cluster> critical;
     for (Cluster& cluster : clusters(vertices)) {
       describe(cluster, moment);
@@ -87,6 +114,23 @@ class Sweep {
     }
     for (const auto& level_component : level_components(critical))
       pass_node(level_component, critical, moment, graph);
+  }
+
+  // What begins at a regular vertex belongs to what ends there.
+  void pass_regular(Vertex vertex) {
+    std::optional<std::uint64_t> strand;
+    const auto is_new = [&](SimplexNumber simplex) {
+      const auto corners = slab.simplex(simplex);
+      return std::none_of(corners.begin(), corners.end(),
+                          [&](Vertex v) { return slab.times[v] < slab.times[vertex]; });
+    };
+    for (const SimplexNumber simplex : slab.stars.of(vertex))
+      if (!is_new(simplex)) {
+        strand = strand_of(simplex);
+        break;
+      }
+    for (const SimplexNumber simplex : slab.stars.of(vertex))
+      if (is_new(simplex)) labels_[simplex] = static_cast<SimplexNumber>(*strand);
   }
 
   std::vector<Cluster> clusters(std::span<const Vertex> vertices) const {
@@ -218,9 +262,11 @@ class Sweep {
   double lower_time_, upper_time_;
   UnionFind strands_;
   std::vector<SimplexNumber> labels_;
+  std::map<std::pair<Vertex, SimplexNumber>, std::uint64_t> parted_; // at the lower step
   std::map<std::uint64_t, std::int64_t> arcs_;
   SideFinder<C> sides_;
   PieceSearch<C> search_;
+  LinkTest<C> link_;
 };
 
 } // namespace hyperiso::track_detail

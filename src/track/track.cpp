@@ -1,5 +1,6 @@
 #include "hyperiso/track.hpp"
 
+#include "core/text.hpp"
 #include "track/level.hpp"
 #include "track/links.hpp"
 #include "track/step_features.hpp"
@@ -29,8 +30,8 @@ class TrackingRun {
     std::unique_ptr<Sweep<D>> lower;
     for (std::int64_t step = 0; step + 1 < graph_.steps; ++step) {
       if (const Status read = window_.read(step + 1); !read) return read.error();
-      auto slab =
-          make_slab<T, D>(SlabSamples<T, D>(window_.slab(step), isovalue_), isovalue_, slab_options());
+      auto slab = make_slab<T, D>(SlabSamples<T, D>(window_.slab(step), isovalue_), isovalue_,
+                                  window_.has_missing(), slab_options());
       if (!slab) return slab.error();
       auto upper = std::make_unique<Sweep<D>>(std::move(*slab), time(step), time(step + 1));
       if (const Status passed = pass_step(step, lower.get(), upper.get()); !passed) return passed.error();
