@@ -1,5 +1,5 @@
 // Meshes written and read back, and files that are damaged or cannot be written. Whether others can read what
-// is written is for readback/meshes.py.
+// is written is for test_mesh_files.py.
 
 #include "hand_made_meshes.hpp"
 #include "hyperiso/io.hpp"
@@ -137,9 +137,7 @@ TEST(Vtk, grid_edges_and_axes_are_restored) {
   for (const Mesh& mesh : meshes) {
     expect_equal_provenance(read_back(mesh, folder / "a.vtu"), mesh);
     if (mesh.dimension < 4) expect_equal_provenance(read_back(mesh, folder / "a.vtp"), mesh);
-    WriteMeshOptions options;
-    options.keep_edges = false;
-    const Mesh without = read_back(mesh, folder / "a.vtu", options);
+    const Mesh without = read_back(mesh, folder / "a.vtu", {.keep_edges = false});
     EXPECT_TRUE(without.edges.empty());
     EXPECT_TRUE(without.grid_axes.empty());
     expect_equal(without, mesh);
@@ -173,9 +171,7 @@ TEST(Vtk, grid_edges_that_fit_no_grid_are_left_out) {
 TEST(Vtk, time_is_named_after_its_axis) {
   const TemporaryFolder folder;
   const Mesh mesh = random_mesh({4, 3});
-  WriteMeshOptions options;
-  options.axis_names = {"x", "y", "z", "age"};
-  const Mesh read = read_back(mesh, folder / "a.vtu", options);
+  const Mesh read = read_back(mesh, folder / "a.vtu", {.axis_names = {"x", "y", "z", "age"}});
   const std::string content = content_of(folder / "a.vtu");
   EXPECT_NE(content.find("Name=\"age\""), std::string::npos);
   EXPECT_EQ(content.find("Name=\"t\""), std::string::npos);
@@ -489,11 +485,9 @@ TEST(WriteMesh, existing_file_stays_when_writing_fails) {
 }
 
 TEST(WriteMesh, full_disk) {
-  for (const char* format : {"vtu", "vtp", "ply", "stl", "obj", "off"}) {
-    WriteMeshOptions options;
-    options.format = format;
-    expect_error(write_mesh(random_mesh({3, 2}), "/dev/full", options), Code::file_unwritable, "/dev/full");
-  }
+  for (const char* format : {"vtu", "vtp", "ply", "stl", "obj", "off"})
+    expect_error(write_mesh(random_mesh({3, 2}), "/dev/full", {.format = format}), Code::file_unwritable,
+                 "/dev/full");
 }
 
 TEST(WriteSeries, names_and_times_as_given) {

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <locale>
 #include <sstream>
 #include <string>
 #include <type_traits>
@@ -21,6 +22,7 @@ std::string shortest(Real number) {
 template <class... Pieces>
 std::string text(const Pieces&... pieces) {
   std::ostringstream out;
+  out.imbue(std::locale::classic()); // no thousands separators, whatever the program has set
   const auto put = [&](const auto& piece) {
     if constexpr (std::is_floating_point_v<std::decay_t<decltype(piece)>>)
       out << shortest(piece);

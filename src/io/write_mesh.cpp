@@ -1,8 +1,8 @@
 #include "core/text.hpp"
 #include "io/mesh_formats.hpp"
+#include "io/parse.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <limits>
 #include <new>
 #include <set>
@@ -16,7 +16,7 @@ struct Format {
   int simplex_dimension[2]; // smallest and largest
   int largest_dimension;
   std::uint64_t largest_count; // of vertices, and of simplices
-  std::function<void(AtomicFile&, const Mesh&, const WriteMeshOptions&)> write;
+  void (*write)(AtomicFile&, const Mesh&, const WriteMeshOptions&);
 };
 
 template <void (*write)(AtomicFile&, const Mesh&)>
@@ -27,7 +27,7 @@ void without_options(AtomicFile& file, const Mesh& mesh, const WriteMeshOptions&
 constexpr std::uint64_t any_count = UINT64_MAX;
 constexpr std::uint64_t int_count = std::numeric_limits<std::int32_t>::max();
 
-const Format formats[] = {
+constexpr Format formats[] = {
     {"vtu", "segments, triangles and tetrahedra in up to 4 dimensions", {1, 3}, 4, any_count, write_vtu},
     {"vtp", "segments and triangles in 2 or 3 dimensions", {1, 2}, 3, any_count, write_vtp},
     {"obj", "segments and triangles in 2 or 3 dimensions", {1, 2}, 3, any_count, without_options<write_obj>},
@@ -39,9 +39,7 @@ const Format formats[] = {
 std::string format_name(const std::filesystem::path& path, const WriteMeshOptions& options) {
   std::string name = options.format.empty() ? path.extension().string() : options.format;
   if (name.starts_with('.')) name.erase(0, 1);
-  for (char& c : name)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return name;
+  return lower_case(name);
 }
 
 const char* name_of_simplices(int dimension) {
