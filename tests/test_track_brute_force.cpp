@@ -223,11 +223,12 @@ std::multiset<std::string> tracked_history(const TrackingGraph& graph) {
 }
 
 template <int D>
-void compare(const std::array<std::int64_t, D>& dims, int range, unsigned seed,
-             Inside inside = Inside::above) {
+void compare(const std::array<std::int64_t, D>& dims, int range, unsigned seed, Inside inside = Inside::above,
+             Method method = Method::hull) {
   const auto field = check::random_field<float, D>(dims, range, seed);
   TrackOptions options;
   options.extraction.inside = inside;
+  options.extraction.method = method;
   const auto graph = track_field(time_field<float, D>(field), 0, options);
   EXPECT_EQ(tracked_history(graph), (brute_force_history<float, D>(field.view, options.extraction)))
       << "seed " << seed << ", samples up to " << range;
@@ -250,6 +251,24 @@ TEST(TrackBruteForce, equal_times_in_3d) {
 }
 TEST(TrackBruteForce, single_events_in_3d) {
   for (unsigned seed = 0; seed < 12; ++seed) compare<4>({3, 4, 3, 3}, 100000, seed, Inside::below);
+}
+
+TEST(TrackBruteForce, simplicial) {
+  for (unsigned seed = 0; seed < 60; ++seed)
+    compare<3>({4, 3, 3}, seed % 2 == 0 ? 1 : 5, seed, Inside::above, Method::simplicial);
+  for (unsigned seed = 0; seed < 8; ++seed)
+    compare<4>({3, 2, 3, 3}, seed % 2 == 0 ? 1 : 5, seed, Inside::above, Method::simplicial);
+}
+// Holes in the data end components as walls do.
+TEST(TrackBruteForce, with_missing_samples) {
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    auto field = check::random_field<float, 3>({5, 5, 4}, 4, seed);
+    std::mt19937 random(seed);
+    for (int i = 0; i < 4; ++i) field.samples[random() % field.samples.size()] = std::nanf("");
+    const auto graph = track_field(time_field<float, 3>(field), 0);
+    const auto expected = brute_force_history<float, 3>(field.view, {});
+    EXPECT_EQ(tracked_history(graph), expected) << "seed " << seed;
+  }
 }
 
 } // namespace

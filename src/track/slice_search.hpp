@@ -4,7 +4,6 @@
 #include "track/side.hpp"
 
 #include <map>
-#include <queue>
 #include <set>
 
 namespace hyperiso::track_detail {
@@ -59,7 +58,8 @@ class PieceSearch {
   // `seeds`: for each place some simplices that meet the slice and are connected near it. The pieces come in
   // the order of their first seeds.
   std::vector<Piece> find(const Slice<C>& slice, const std::vector<std::vector<SimplexNumber>>& seeds) {
-    owner_.clear();
+    if (owner_.empty()) owner_.resize(slice.slab.simplex_count());
+    ++search_;
     UnionFind groups(seeds.size());
     std::vector<std::vector<SimplexNumber>> found(seeds.size());
     std::vector<std::size_t> next(seeds.size(), 0); // what of `found` has been expanded
@@ -96,14 +96,17 @@ class PieceSearch {
  private:
   void claim(SimplexNumber simplex, std::size_t seed, UnionFind& groups,
              std::vector<std::vector<SimplexNumber>>& found) {
-    const auto [place, is_new] = owner_.try_emplace(simplex, seed);
-    if (is_new)
-      found[seed].push_back(simplex);
-    else
-      groups.unite(place->second, seed);
+    Owner& owner = owner_[simplex];
+    if (owner.search == search_) return groups.unite(owner.seed, seed);
+    owner = {search_, static_cast<std::uint32_t>(seed)};
+    found[seed].push_back(simplex);
   }
 
-  std::map<SimplexNumber, std::size_t> owner_;
+  struct Owner {
+    std::uint32_t search = 0, seed = 0;
+  };
+  std::vector<Owner> owner_; // of each simplex
+  std::uint32_t search_ = 0;
 };
 
 // The boundary curves of a slice of a surface in 3D: where M ends at walls of the domain, or of the data.

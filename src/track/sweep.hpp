@@ -103,9 +103,15 @@ class Sweep {
 
   void pass_moment(std::span<const Vertex> vertices, GraphBuilder& graph) {
     const double moment = slab.times[vertices[0]];
-    if (vertices.size() == 1 && link_.is_regular(slab, vertices[0])) return pass_regular(vertices[0]);
+    std::vector<Vertex> others;
+    for (const Vertex vertex : vertices)
+      if (link_.is_regular(slab, vertex))
+        pass_regular(vertex);
+      else
+        others.push_back(vertex);
+    if (others.empty()) return;
     std::vector<Cluster> critical;
-    for (Cluster& cluster : clusters(vertices)) {
+    for (Cluster& cluster : clusters(others)) {
       describe(cluster, moment);
       if (cluster.regular())
         label(cluster.after.components[0], strand_of(cluster.before.components[0][0]));
@@ -135,11 +141,6 @@ class Sweep {
 
   std::vector<Cluster> clusters(std::span<const Vertex> vertices) const {
     std::vector<Cluster> result;
-    if (vertices.size() == 1) {
-      result.emplace_back();
-      result[0].vertices.push_back(vertices[0]);
-      return result;
-    }
     std::set<Vertex> seen;
     for (const Vertex vertex : vertices) {
       if (!seen.insert(vertex).second) continue;

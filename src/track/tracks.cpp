@@ -140,14 +140,21 @@ class TrackAssignment {
     graph_.arcs[index(number)].track = current;
     const auto start = row_of_event_.find(graph_.arcs[index(number)].start_event);
     std::int64_t before = start == row_of_event_.end() ? -1 : static_cast<std::int64_t>(start->second);
-    for (const std::size_t row : arc.rows) {
+    const auto pass_row = [&](std::size_t row) {
       if (weak_.contains({before, static_cast<std::int64_t>(row)})) {
         end_track(current, graph_.features[index(before)].time, "weak");
         current = new_track(graph_.features[row].time, "weak");
       }
-      graph_.features[row].track = current;
       before = static_cast<std::int64_t>(row);
+    };
+    for (const std::size_t row : arc.rows) {
+      pass_row(row);
+      graph_.features[row].track = current;
     }
+    const std::int64_t end = graph_.arcs[index(number)].end_event;
+    const auto row_at_end = row_of_event_.find(end);
+    if (row_at_end != row_of_event_.end() && graph_.events[index(end)].arcs_out.empty())
+      pass_row(row_at_end->second);
     arc.last_track = current;
   }
 
