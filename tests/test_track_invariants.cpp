@@ -2,7 +2,11 @@
 // values.
 
 #include "core/union_find.hpp"
+#include "hyperiso/io.hpp"
+#include "hyperiso/slice.hpp"
 #include "track_fields.hpp"
+
+#include <filesystem>
 
 namespace hyperiso {
 namespace {
@@ -289,6 +293,62 @@ TEST(TrackInvariants, the_graph_of_a_rising_field_is_its_contour_tree) {
     compare_with_contour_tree<3>(Method::simplicial, seed, {3, 4, 3});
     compare_with_contour_tree<3>(Method::hull, seed, {3, 4, 3});
   }
+}
+
+// Real data: at moments between events, the components of the slice that `slice` cuts are the arcs alive, and
+// its Euler characteristic changes from moment to moment by what the events say.
+void compare_with_slices(const Field& field, double isovalue) {
+  const auto graph = track_field(field, isovalue);
+  std::vector<double> times;
+  for (const auto& event : graph.events) times.push_back(event.time);
+  const auto view = field.view<float, 4>();
+  std::optional<std::int64_t> euler;
+  std::size_t next_event = 0;
+  std::mt19937 random(7);
+  const double start = times.front(), end = times.back();
+  for (int i = 1; i < 24; ++i) {
+    const double share = (i + std::uniform_real_distribution<double>(0.1, 0.9)(random)) / 25;
+    const double time = start + share * (end - start);
+    const auto cut = slice(view, isovalue, Hyperplane<4>::at(3, time));
+    ASSERT_TRUE(cut) << cut.error().message;
+    const auto measured = measure(*cut);
+    const auto alive = std::ranges::count_if(graph.arcs, [&](const TrackingArc& arc) {
+      return times[static_cast<std::size_t>(arc.start_event)] < time &&
+             times[static_cast<std::size_t>(arc.end_event)] > time;
+    });
+    EXPECT_EQ(static_cast<std::uint64_t>(alive), measured->components) << "at " << time;
+    for (; next_event < graph.events.size() && times[next_event] < time; ++next_event)
+      if (euler) *euler += graph.events[next_event].delta_euler;
+    if (euler) EXPECT_EQ(*euler, measured->euler_characteristic) << "at " << time;
+    euler = measured->euler_characteristic;
+  }
+  for (const auto& row : graph.features) {
+    EXPECT_EQ(row.genus(), std::floor(row.genus()));
+    EXPECT_GE(row.volume, 0);
+  }
+}
+
+std::filesystem::path shared_data() {
+  if (const char* folder = std::getenv("HYPERISO_SHARED_DATA")) return folder;
+  return std::filesystem::path(HYPERISO_SOURCE_FOLDER) / ".." / "shared" / "data";
+}
+
+TEST(TrackInvariants, water_of_the_dam_break) {
+  auto reader = open_field(
+      {std::filesystem::path(HYPERISO_SOURCE_FOLDER) / "examples/data/alpha_water_24x24x24x41.nrrd"});
+  ASSERT_TRUE(reader) << reader.error().message;
+  compare_with_slices(*(*reader)->read(), 0.5);
+}
+
+TEST(TrackInvariants, viscous_fingers) {
+  const auto folder = shared_data() / "viscous_fingers";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) files.push_back(entry.path());
+  std::ranges::sort(files);
+  auto reader = open_field(files);
+  ASSERT_TRUE(reader) << reader.error().message;
+  compare_with_slices(*(*reader)->read(), 30);
 }
 
 } // namespace

@@ -1,3 +1,31 @@
+// Tracking: the Reeb graph of time on the isosurface M in space and time, slab by slab (docs/tracking.md).
+//
+// For each slab, which is what lies between two steps:
+//   slab.hpp          extracts the slab's part of M and gives each vertex its time, a fraction of the step:
+//   the
+//                     weight of its crossing, so that equal samples give equal times and only vertices on a
+//                     step have 0 or 1
+//   level.hpp         decides the nodes at the step where the slab begins, from the closed level set of that
+//   time:
+//                     which arcs of the slab before reach each of its pieces, which strands of this one leave
+//                     it
+//   sweep.hpp         passes the vertices inside the slab in order of time and decides the nodes there
+//     link_test.hpp     almost all vertices are regular: told by bits
+//     side.hpp          the slices just before and after a cluster of vertices with one time: their pieces,
+//     their
+//                       Euler characteristic
+//     slice_search.hpp  whether several places of a slice are connected, and how many boundary curves pass
+//     some
+//   graph_builder.hpp collects events and arcs
+//   step_features.hpp measures the components at the step, on regions of samples (regions.hpp)
+//   links.hpp         says which rows of the last step each row comes from, for overlaps
+// After the last step:
+//   tracks.hpp        names what goes on through events
+//
+// A strand is a component of the slices within one slab, an arc one from node to node; a strand has an arc,
+// and at a step an arc goes on to a strand of the next slab. Nothing compares times or places with a
+// tolerance: a node is what is connected at exactly its time.
+
 #include "hyperiso/track.hpp"
 
 #include "core/text.hpp"
