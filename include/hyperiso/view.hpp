@@ -4,6 +4,7 @@
 
 #include "hyperiso/mesh.hpp"
 #include "hyperiso/progress.hpp"
+#include "hyperiso/track.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -24,7 +25,9 @@ struct PageOptions {
   std::string colour_by; ///< what the page colours by at first: "solid", "time", "component", "track" or the
                          ///< name of an attribute; empty: the page decides
   std::vector<std::string> notes; ///< what a reader has to know, for example that samples were left out
-  std::string tracking; ///< JSON object with "tracks" and "events" as `track --json` prints them; empty: none
+  /// Tracks and events to show under the scene, and to colour by; of the field that the mesh is the surface
+  /// of.
+  const TrackingGraph* tracking = nullptr;
   std::uint64_t size_limit = UINT64_MAX; ///< bytes that the page may have
   Progress progress = {};
 };
@@ -42,9 +45,9 @@ bool has_viewer();
 ///
 /// About 5 bytes per tetrahedron in the file, 19 on the graphics card.
 ///
-/// Errors: file_unsupported for other meshes or without the viewer; out_of_memory, also where the page would
-/// pass `size_limit` or the mesh what graphics cards hold (16.7 million vertices, 33.5 million simplices);
-/// file_unwritable; cancelled.
+/// Errors: file_unsupported for other meshes or without the viewer; invalid_argument where the page would
+/// pass `size_limit`; out_of_memory where the mesh passes what graphics cards hold (16.7 million
+/// vertices, 33.5 million simplices); file_unwritable; cancelled.
 Status write_page(const Mesh& mesh, const PageOptions& options, const std::filesystem::path& path);
 
 } // namespace hyperiso

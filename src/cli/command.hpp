@@ -26,5 +26,6 @@ Command measure_command(CLI::App& program);
 Command table_command(CLI::App& program);
 Command sample_command(CLI::App& program);
 Command convert_command(CLI::App& program);
+Command view_command(CLI::App& program); // only where the viewer is built
 
 } // namespace hyperiso::cli

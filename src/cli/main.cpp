@@ -21,6 +21,9 @@ constexpr const char* short_help =
     "  hyperiso info FILE                          what does it hold?\n"
     "  hyperiso extract FILE --iso 0.5 -o out.vtu  the surface through all of time\n"
     "  hyperiso slice out.vtu --time 0.3 -o at.vtp the surface at any time\n"
+#ifdef HYPERISO_HAS_VIEWER
+    "  hyperiso view FILE --iso 0.5 -o out.html    a page that plays it\n"
+#endif
     "\n"
     "'hyperiso --help' says all, 'hyperiso VERB --help' all about a verb.\n";
 
@@ -74,9 +77,12 @@ int run(std::vector<std::string> arguments) {
   program.set_version_flag("--version", "hyperiso " HYPERISO_VERSION, "print the version");
   program.require_subcommand(1);
   set_manual(program, program_manual());
-  const std::vector<Command> commands = {
-      info_command(program),    extract_command(program), slice_command(program),  track_command(program),
-      measure_command(program), table_command(program),   sample_command(program), convert_command(program)};
+  std::vector<Command> commands = {info_command(program),   extract_command(program), slice_command(program),
+                                   track_command(program),  measure_command(program), table_command(program),
+                                   sample_command(program), convert_command(program)};
+#ifdef HYPERISO_HAS_VIEWER
+  commands.push_back(view_command(program));
+#endif
   check_verb(program, arguments);
   try {
     std::ranges::reverse(arguments); // as CLI11 takes them

@@ -1,10 +1,12 @@
 #include "hyperiso/view.hpp"
 
 #include "core/text.hpp"
+#include "hyperiso/track_files.hpp"
 #include "io/atomic_file.hpp"
 #include "io/encoding.hpp"
 #include "view/payload.hpp"
 #include "view/shell.hpp"
+#include "view/track_labels.hpp"
 
 #include <nlohmann/json.hpp>
 #include <zlib.h>
@@ -130,6 +132,17 @@ Json attributes_json(const std::vector<EncodedAttribute>& attributes) {
   return result;
 }
 
+// The summary that files hold too, and of each track its volume at the steps.
+Json tracking_json(const TrackingGraph& graph) {
+  Json json = Json::parse(tracking_summary_json(graph));
+  for (Json& track : json["tracks"]) track["volumes"] = Json::array();
+  for (const Feature& feature : graph.features)
+    if (feature.track >= 0)
+      json["tracks"][static_cast<std::size_t>(feature.track)]["volumes"].push_back(
+          {feature.time, feature.volume});
+  return json;
+}
+
 Json metadata(const Mesh& mesh, const PageOptions& options, const Ranges& ranges, const Payload& payload,
               const std::vector<EncodedAttribute>& attributes) {
   Json blocks = Json::array();
@@ -149,7 +162,7 @@ Json metadata(const Mesh& mesh, const PageOptions& options, const Ranges& ranges
                {"notes", options.notes},
                {"blocks", std::move(blocks)}};
   if (options.isovalue) json["isovalue"] = *options.isovalue;
-  if (!options.tracking.empty()) json["tracking"] = Json::parse(options.tracking, nullptr, false);
+  if (options.tracking) json["tracking"] = tracking_json(*options.tracking);
   return json;
 }
 
@@ -170,7 +183,7 @@ class LimitedFile {
 };
 
 Error too_large(const Mesh& mesh, const PageOptions& options) {
-  return {Code::out_of_memory,
+  return {Code::invalid_argument,
           text("a page of ", mesh.simplex_count(), " simplices would be larger than ",
                byte_size(options.size_limit), "; fewer samples, fewer steps or a higher limit would do")};
 }
@@ -184,7 +197,9 @@ Status write_data(const Mesh& mesh, const PageOptions& options, LimitedFile& fil
     quantisers.push_back(quantiser_of(ranges.axes[k], ranges.minimum[k], ranges.maximum[k]));
   const bool time_slabs = options.has_time && mesh.dimension == 4;
   const Payload payload(mesh, std::move(quantisers), time_slabs);
-  const std::vector<EncodedAttribute> attributes = encode_attributes(mesh);
+  std::vector<EncodedAttribute> attributes = encode_attributes(mesh);
+  if (options.tracking)
+    attributes.push_back(encode_labels("track", tracks_of_vertices(mesh, *options.tracking)));
 
   const std::string json = script_text(metadata(mesh, options, ranges, payload, attributes));
   bool fits = file.write("<script type=\"application/json\" id=\"hyperiso-metadata\">") && file.write(json) &&

@@ -231,4 +231,12 @@ std::vector<EncodedAttribute> encode_attributes(const Mesh& mesh) {
   return result;
 }
 
+EncodedAttribute encode_labels(std::string name, const std::vector<std::int32_t>& labels) {
+  EncodedAttribute encoded;
+  encoded.name = std::move(name);
+  encoded.levels.resize(labels.size());
+  encode_values(std::vector<std::int64_t>(labels.begin(), labels.end()), encoded);
+  return encoded;
+}
+
 } // namespace hyperiso

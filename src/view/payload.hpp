@@ -80,4 +80,7 @@ class Payload {
 // The mesh's attributes that a page can colour by.
 std::vector<EncodedAttribute> encode_attributes(const Mesh& mesh);
 
+// One label per vertex.
+EncodedAttribute encode_labels(std::string name, const std::vector<std::int32_t>& labels);
+
 } // namespace hyperiso

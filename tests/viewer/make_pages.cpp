@@ -45,28 +45,24 @@ Page sample_page(const std::string& name, std::vector<std::int64_t> dims, bool t
   return page;
 }
 
-// Two blobs, their tracks by the side they are on, until they merge at 0.6 into the first of them.
-Page tracked_page() {
-  Page page = sample_page<4>("gaussians", {24, 24, 24, 21}, true);
-  std::vector<std::int32_t> track;
+// Two blobs and their tracks, with the height as an attribute.
+struct TrackedPage {
+  Page page;
+  TrackingGraph graph;
+};
+
+TrackedPage tracked_page() {
+  TrackedPage tracked{sample_page<4>("gaussians", {24, 24, 24, 21}, true), {}};
+  SampleOptions sample;
+  sample.dims = {24, 24, 24, 21};
+  FieldSteps steps(take(make_sample("gaussians", sample)));
+  tracked.graph = take(track(steps, *tracked.page.options.isovalue));
+  const Mesh& mesh = *tracked.page.mesh;
   std::vector<float> height;
-  for (std::size_t i = 0; i < page.mesh->vertex_count(); ++i) {
-    const bool second = page.mesh->positions[4 * i] > 0 && page.mesh->positions[4 * i + 3] < 0.6;
-    track.push_back(second ? 2 : 1);
-    height.push_back(static_cast<float>(page.mesh->positions[4 * i + 2]));
-  }
-  page.mesh->attributes.push_back({"track", Attribute::Location::vertex, 1, track});
-  page.mesh->attributes.push_back({"height", Attribute::Location::vertex, 1, height});
-  page.options.tracking = R"({"steps": 21, "tracks": [
-    {"id": 1, "start_time": 0, "end_time": 1, "parents": [], "children": [], "max_volume": 2},
-    {"id": 2, "start_time": 0, "end_time": 0.6, "parents": [], "children": [1], "max_volume": 1}],
-    "events": [
-    {"time": 0, "type": "open_start", "position": [-0.5, 0, 0], "in": [], "out": [1], "delta_euler": 0},
-    {"time": 0, "type": "open_start", "position": [0.5, 0, 0], "in": [], "out": [2], "delta_euler": 0},
-    {"time": 0.6, "type": "merge", "position": [0, 0, 0], "in": [1, 2], "out": [1], "delta_euler": -2},
-    {"time": 0.8, "type": "genus", "position": [0.2, 0.1, 0], "in": [1], "out": [1], "delta_euler": 2},
-    {"time": 1, "type": "open_end", "position": [0, 0, 0], "in": [1], "out": [], "delta_euler": 0}]})";
-  return page;
+  for (std::size_t i = 0; i < mesh.vertex_count(); ++i)
+    height.push_back(static_cast<float>(mesh.positions[4 * i + 2]));
+  tracked.page.mesh->attributes.push_back({"height", Attribute::Location::vertex, 1, height});
+  return tracked;
 }
 
 void write(const Page& page, const std::filesystem::path& path) {
@@ -93,7 +89,9 @@ int main(int count, char** arguments) {
   Page blobs = sample_page<4>("gaussians", {24, 24, 24, 21}, true);
   blobs.options.notes = {"Every second sample was left out."};
   write(blobs, folder / "blobs.html");
-  write(tracked_page(), folder / "tracks.html");
+  TrackedPage tracked = tracked_page();
+  tracked.page.options.tracking = &tracked.graph;
+  write(tracked.page, folder / "tracks.html");
   write(sample_page<3>("gaussians", {40, 40, 21}, true), folder / "spacetime.html");
   write(sample_page<3>("gyroid", {24, 24, 24}, false), folder / "still.html");
   write({std::make_unique<SimplexMesh<4>>(), {}}, folder / "empty.html");

@@ -32,7 +32,7 @@ export class App {
   readonly surface: Surface;
   readonly view: SceneView;
   readonly colourings: Colouring[];
-  readonly events: TrackEvent[];
+  readonly events: TrackEvent[]; // those that are shown, by time
   private readonly listeners: ((state: State, changed: Set<keyof State>) => void)[] = [];
   private shownColour = "";
   private components: { count: number; ofVertex: Uint32Array } | null = null;
@@ -44,7 +44,8 @@ export class App {
   constructor(readonly mesh: Mesh, readonly space: Space, readonly metadata: Metadata) {
     this.surface = new Surface(mesh, space);
     this.view = new SceneView(element("stage"), element("view"), element("labels"), space, this.surface);
-    this.events = [...(metadata.tracking?.events ?? [])].sort((a, b) => a.time - b.time);
+    this.events = (metadata.tracking?.events ?? []).filter((event) => !event.simplified && !event.type.startsWith("open"))
+      .sort((a, b) => a.time - b.time);
     this.colourings = this.listColourings();
     this.initial = this.valid(initialState(metadata, space));
     this.state = this.initial;
@@ -281,7 +282,7 @@ export class App {
     list.push({ key: "component", name: "Component", kind: "label", range: [0, 1] });
     if (space.timeAxis === 3) {
       const fastest = this.typicalSpeed();
-      list.push({ key: "speed", name: "Normal speed" + this.speedUnit(), kind: "range", range: [-fastest, fastest], diverging: true });
+      list.push({ key: "speed", name: "Speed" + this.speedUnit(), kind: "range", range: [-fastest, fastest], diverging: true });
     }
     metadata.attributes.forEach((one, k) => {
       if (one.kind === "label" && /^track(_id)?$/.test(one.name)) return;

@@ -24,8 +24,8 @@ export interface Track {
   parents?: number[];
   children?: number[];
   max_volume?: number;
-  family_id?: number;
-  steps?: { time: number; volume: number }[];
+  simplified?: boolean; // too small or too short to be shown
+  volumes?: [time: number, volume: number][]; // at the steps
 }
 
 export interface TrackEvent {
@@ -35,6 +35,7 @@ export interface TrackEvent {
   in: number[];
   out: number[];
   delta_euler?: number;
+  simplified?: boolean;
 }
 
 export interface Tracking {

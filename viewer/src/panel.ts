@@ -48,7 +48,7 @@ function buildPresets(app: App): void {
   if (app.space.timeAxis >= 0) order.unshift(order.pop()!);
   for (const k of order)
     add(k, app.space.axes[k]!.name, `Plane across ${app.space.axes[k]!.name}`, () => app.acrossAxis(k));
-  add(-1, "diagonal", "Oblique plane across all axes", () => app.diagonal());
+  add(-1, "oblique", "A plane across all axes; tilt it below", () => app.diagonal());
   app.onChange((_, changed) => {
     if (!changed.has("frame")) return;
     for (const { axis, button } of buttons) button.setAttribute("aria-pressed", String(axis === app.axis));
@@ -144,25 +144,23 @@ function showLegend(app: App): void {
     element("legend-low").textContent = input("range-low").value = readable(low, step);
     element("legend-high").textContent = input("range-high").value = readable(high, step);
   } else if (colouring.kind === "label") {
-    const count = Math.min(12, labelCount(app));
-    const stops = Array.from({ length: count }, (_, i) =>
-      `${labelColour(i)} ${(100 * i) / count}% ${(100 * (i + 1)) / count}%`);
+    const labels = shownLabels(app);
+    const width = 100 / Math.min(12, labels.length);
+    const stops = labels.slice(0, 12).map((label, i) => `${labelColour(label)} ${width * i}% ${width * (i + 1)}%`);
     element("legend-bar").style.background = `linear-gradient(to right, ${stops.join(", ")})`;
-    element("legend-low").textContent = labelText(app);
+    const what = state.colour === "component" ? "component" : state.colour === "track" ? "track" : "value";
+    element("legend-low").textContent = `${labels.length} ${what}${labels.length === 1 ? "" : "s"}`;
     element("legend-high").textContent = "";
   }
 }
 
-function labelCount(app: App): number {
-  if (app.state.colour === "component") return app.componentCount();
-  if (app.state.colour === "track") return app.metadata.tracking?.tracks.length ?? 12;
-  const attribute = app.metadata.attributes[Number(app.state.colour.slice(10))];
-  return attribute?.kind === "label" ? attribute.labels.length : 12;
-}
-function labelText(app: App): string {
-  const count = labelCount(app);
-  const what = app.state.colour === "component" ? "component" : app.state.colour === "track" ? "track" : "value";
-  return `${count} ${what}${count === 1 ? "" : "s"}`;
+/// The labels of the colouring that is shown: as the graphics card has them.
+function shownLabels(app: App): number[] {
+  const range = (count: number): number[] => Array.from({ length: count }, (_, i) => i);
+  if (app.state.colour === "component") return range(app.componentCount());
+  if (app.state.colour === "track" && app.metadata.tracking) return app.metadata.tracking.tracks.map((track) => track.id);
+  const attribute = app.metadata.attributes[app.state.colour === "track" ? app.trackAttribute() : Number(app.state.colour.slice(10))];
+  return attribute?.kind === "label" ? (app.state.colour === "track" ? attribute.labels : range(attribute.labels.length)) : [];
 }
 
 function buildView(app: App): void {

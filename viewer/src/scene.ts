@@ -227,7 +227,7 @@ export class SceneView {
     let across: [number, number] = [-(end[1] - begin[1]) / length, (end[0] - begin[0]) / length];
     if ((middle[0] - centre[0]) * across[0] + (middle[1] - centre[1]) * across[1] < 0) across = [-across[0], -across[1]];
     const axis = this.space.axes[k]!;
-    const step = niceStep(axis.maximum - axis.minimum, Math.max(1, Math.min(6, Math.floor(length / 64))));
+    const step = niceStep(axis.maximum - axis.minimum, Math.max(2, Math.min(6, Math.floor(length / 50))));
     const { labels } = this;
     labels.textAlign = "center";
     labels.textBaseline = "middle";
@@ -243,13 +243,17 @@ export class SceneView {
       labels.globalAlpha = 0.75;
       const text = readable(i * step, step);
       const away = 8 + (Math.abs(across[0]) * labels.measureText(text).width) / 2;
-      labels.fillText(text, x + away * across[0], y + 14 * across[1]);
+      // Labels at the ends move inwards, or those of two axes would meet at a corner.
+      const inward = Math.max(0, 12 - Math.hypot(x - begin[0], y - begin[1])) - Math.max(0, 12 - Math.hypot(x - end[0], y - end[1]));
+      labels.fillText(text, x + away * across[0] + (inward * (end[0] - begin[0])) / length, y + 14 * across[1] + (inward * (end[1] - begin[1])) / length);
       labels.globalAlpha = 1;
     }
     labels.font = "600 13px system-ui, sans-serif";
     const name = this.space.label(k);
     const clear = 30 + (Math.abs(across[0]) * labels.measureText(name).width) / 2;
-    labels.fillText(name, middle[0] + clear * across[0], middle[1] + 36 * across[1]);
+    const margin = labels.measureText(name).width / 2 + 4;
+    const left = Math.max(margin, Math.min(this.stage.clientWidth - margin, middle[0] + clear * across[0]));
+    labels.fillText(name, left, middle[1] + 36 * across[1]);
   }
 
   /// For oblique planes: in which directions of the picture the axes run.

@@ -37,7 +37,7 @@ export function initialState(metadata: Metadata, space: Space): State {
     speed: 1,
     loop: "repeat",
     colour: initialColour(metadata),
-    map: "viridis",
+    map: metadata.colourBy === "speed" ? "blue to red" : "viridis",
     reversed: false,
     range: null,
     opacity: 1,

@@ -3,8 +3,12 @@ import { type App, element } from "./app";
 import { labelColour } from "./colours";
 import type { Track, TrackEvent } from "./metadata";
 
+/// Events that leave the number of components as it is: there can be many.
+export const isMinor = (type: string): boolean => type === "genus" || type === "touch";
+
 const SVG = "http://www.w3.org/2000/svg";
-const LANE = 18, TOP = 12, LEFT = 18, RIGHT = 18;
+const LANE = 20, TOP = 14;
+const MOST_NAMED = 16; // events that are named beside their glyph
 
 function svg<K extends keyof SVGElementTagNameMap>(name: K, attributes: Record<string, string | number>): SVGElementTagNameMap[K] {
   const result = document.createElementNS(SVG, name);
@@ -35,17 +39,21 @@ const GLYPHS: Record<string, string> = {
 
 function glyphOf(type: string): SVGElement {
   if (GLYPHS[type]) return svg("path", { d: GLYPHS[type]! });
-  if (type === "genus" || type === "touch") return svg("rect", { x: -4, y: -4, width: 8, height: 8 });
+  if (isMinor(type)) return svg("rect", { x: -2, y: -5, width: 4, height: 10, rx: 2 });
   return svg("circle", { r: 4.5 });
 }
 
 export function buildTracking(app: App): void {
   const { tracking } = app.metadata;
-  if (!tracking || tracking.tracks.length === 0 || app.space.timeAxis < 0) return;
+  if (!tracking || app.space.timeAxis < 0) return;
+  const tracks = tracking.tracks.filter((track) => !track.simplified);
+  if (tracks.length === 0) return;
   const host = element("tracking");
   host.hidden = false;
-  const lanes = lanesOf(tracking.tracks);
+  element("dock").classList.add("with-tracks");
+  const lanes = lanesOf(tracks);
   const axis = app.space.axes[app.space.timeAxis]!;
+  const largestVolume = tracks.reduce((largest, track) => Math.max(largest, track.max_volume ?? 0), 0);
   const height = TOP * 2 + LANE * (Math.max(...lanes.values()) + 1);
   const drawing = svg("svg", { height, role: "group", "aria-label": "Tracks and events through time" });
   const now = svg("line", { class: "now", y1: 0, y2: height });
@@ -55,12 +63,17 @@ export function buildTracking(app: App): void {
 
   const draw = (): void => {
     const width = Math.max(120, host.clientWidth);
-    x = (time) => LEFT + ((width - LEFT - RIGHT) * (time - axis.minimum)) / (axis.maximum - axis.minimum || 1);
+    // The sides are those of the slider below: where the middle of its handle, 16 wide, stands at either end.
+    const slider = element("scrub").getBoundingClientRect();
+    const side = slider.left - host.getBoundingClientRect().left + 8;
+    x = (time) => side + ((slider.width - 16) * (time - axis.minimum)) / (axis.maximum - axis.minimum || 1);
     drawing.replaceChildren();
     drawing.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    for (const event of tracking.events) drawLinks(event);
-    for (const track of tracking.tracks) drawing.append(lane(track));
-    for (const event of tracking.events) if (!event.type.startsWith("open")) drawing.append(glyph(event));
+    for (const event of app.events) drawLinks(event);
+    for (const track of tracks) drawing.append(lane(track));
+    const shown = app.events.filter((event) => [...event.in, ...event.out].some((id) => lanes.has(id)));
+    const byWeight = [...shown].sort((a, b) => Number(isMinor(b.type)) - Number(isMinor(a.type)));
+    for (const event of byWeight) drawing.append(glyph(event, shown.length <= MOST_NAMED));
     drawing.append(now);
     moveNow();
   };
@@ -88,6 +101,11 @@ export function buildTracking(app: App): void {
     const title = svg("title", {});
     title.textContent = group.getAttribute("aria-label");
     group.append(title);
+    if (end - begin > 90) {
+      const name = svg("text", { x: begin + 8, y: y(track.id) + 4 });
+      name.textContent = `track ${track.id}`;
+      group.append(name);
+    }
     const light = (on: boolean) => app.set({ highlight: on ? track.id & 0xffff : -1, ...(on && app.trackAttribute() >= 0 ? { colour: "track" } : {}) });
     group.addEventListener("pointerenter", () => light(true));
     group.addEventListener("pointerleave", () => light(false));
@@ -99,25 +117,30 @@ export function buildTracking(app: App): void {
   /// A bar, or a band as wide as the track is large at each step.
   const ribbon = (track: Track, begin: number, end: number): string => {
     const middle = y(track.id);
-    const largest = Math.max(...tracking.tracks.map((one) => one.max_volume ?? 0));
-    const half = (volume: number | undefined) => volume === undefined || !largest ? 3.5 : 1.5 + 5.5 * Math.sqrt(volume / largest);
-    const steps = track.steps ?? [];
+    const half = (volume: number | undefined) => volume === undefined || !largestVolume ? 3.5 : 1.5 + 5.5 * Math.sqrt(volume / largestVolume);
+    const steps = track.volumes ?? [];
     if (steps.length < 2) {
       const h = half(track.max_volume);
       return `M${begin} ${middle - h}H${end}V${middle + h}H${begin}z`;
     }
-    const upper = steps.map((step) => `${x(step.time)} ${middle - half(step.volume)}`);
-    const lower = [...steps].reverse().map((step) => `${x(step.time)} ${middle + half(step.volume)}`);
+    const upper = steps.map(([time, volume]) => `${x(time)} ${middle - half(volume)}`);
+    const lower = [...steps].reverse().map(([time, volume]) => `${x(time)} ${middle + half(volume)}`);
     return `M${begin} ${middle}L${upper.join("L")}L${end} ${middle}L${lower.join("L")}z`;
   };
-  const glyph = (event: TrackEvent): SVGElement => {
+  const glyph = (event: TrackEvent, named: boolean): SVGElement => {
     const tracks = [...event.in, ...event.out].filter((id) => lanes.has(id));
     const at = tracks.length ? y(event.out.find((id) => lanes.has(id)) ?? tracks[0]!) : TOP;
     const label = `${event.type} at ${app.positionText(app.space.timeAxis, event.time)}`;
-    const group = svg("g", { class: "glyph", transform: `translate(${x(event.time)} ${at})`, tabindex: 0, role: "button", "aria-label": label, "data-event": event.type });
+    const group = svg("g", { class: isMinor(event.type) ? "glyph minor" : "glyph", transform: `translate(${x(event.time)} ${at})`, tabindex: 0, role: "button", "aria-label": label, "data-event": event.type });
     const title = svg("title", {});
     title.textContent = label;
     group.append(glyphOf(event.type), title);
+    if (named) {
+      const right = x(event.time) < drawing.clientWidth - 80;
+      const name = svg("text", { x: right ? 9 : -9, y: 4, "text-anchor": right ? "start" : "end" });
+      name.textContent = event.type;
+      group.append(name);
+    }
     group.addEventListener("click", () => app.showEvent(event));
     group.addEventListener("keydown", (key) => {
       if ((key as KeyboardEvent).key === "Enter" || (key as KeyboardEvent).key === " ") app.showEvent(event);

@@ -1,6 +1,7 @@
 // Playing and scrubbing, the events on the time line, and the keys.
 import { type App, element } from "./app";
 import { readable } from "./space";
+import { isMinor } from "./tracking";
 
 const input = (id: string): HTMLInputElement => element<HTMLInputElement>(id);
 const select = (id: string): HTMLSelectElement => element<HTMLSelectElement>(id);
@@ -42,10 +43,9 @@ function showMarks(app: App, [low, high]: [number, number]): void {
   marks.replaceChildren();
   if (app.axis !== app.space.timeAxis || app.space.timeAxis < 0) return;
   for (const event of app.events) {
-    if (event.type.startsWith("open")) continue;
     const mark = document.createElement("button");
     mark.type = "button";
-    mark.className = "mark";
+    mark.className = isMinor(event.type) ? "mark minor" : "mark";
     mark.tabIndex = -1; // the keys [ and ] go through them
     mark.style.left = `${(100 * (event.time - low)) / (high - low || 1)}%`;
     mark.title = `${event.type} at ${app.positionText(app.space.timeAxis, event.time)}`;

@@ -176,7 +176,7 @@ describe("the page of a surface in space and time", () => {
       assert.match(await page.textContent("#position"), new RegExp(`^${name} = .* ${name === "t" ? "s" : "mm"}`));
       assert.equal(await page.getAttribute(`#presets button:text-is("${name}")`, "aria-pressed"), "true");
     }
-    await page.click('#presets button:text-is("diagonal")');
+    await page.click('#presets button:text-is("oblique")');
     assert.deepEqual(await page.evaluate(() => hyperiso.state.frame[3].map((x) => Number(x.toFixed(9)))), [0.5, 0.5, 0.5, 0.5]);
     await page.keyboard.press("2");
     assert.equal(await page.evaluate(() => hyperiso.axis), 1);
@@ -220,7 +220,7 @@ describe("the page of a surface in space and time", () => {
       if (value !== "solid") assert.equal(await page.textContent("#legend-name"), name);
     }
     assert.ok(seen.size >= 6, `${seen.size} different pictures`);
-    assert.equal(options.find(([value]) => value === "speed")[1], "Normal speed (mm/s)");
+    assert.equal(options.find(([value]) => value === "speed")[1], "Speed (mm/s)");
     await page.selectOption("#colour", "component");
     assert.match(await page.textContent("#legend"), /1 component/);
     await page.selectOption("#colour", "axis:2");
@@ -504,38 +504,62 @@ describe("the page of a tracking result", () => {
   before(async () => { ({ page, problems, close } = await open("tracks.html")); });
   after(async () => { await close?.(); });
 
+  const MERGE = 0.594922; // of these blobs on this grid
+
   test("shows tracks as lanes and events on the time line", async () => {
     assert.ok(await page.isVisible("#tracking"));
     assert.equal(await page.locator(".lane").count(), 2);
-    assert.equal(await page.locator(".glyph").count(), 2);
-    assert.equal(await page.locator(".mark").count(), 2);
+    assert.deepEqual(await page.locator(".glyph").allTextContents(), ["merge at t = 0.595 smerge"]);
+    assert.equal(await page.locator(".mark").count(), 1);
     assert.equal(await state(page, "colour"), "track");
     assert.match(await page.textContent("#legend"), /2 tracks/);
+    // A mark stands where the slider's handle is at that time.
+    const [mark, scrub] = [await page.locator(".mark").boundingBox(), await page.locator("#scrub").boundingBox()];
+    near(mark.x + mark.width / 2, scrub.x + 8 + MERGE * (scrub.width - 16), 1);
+    const glyph = await page.locator(".glyph path").boundingBox();
+    near(glyph.x + glyph.width / 2, mark.x + mark.width / 2, 4);
+  });
+
+  test("each blob has its track until they merge into one", async () => {
+    const wrong = await page.evaluate((merge) => {
+      const { mesh, space } = hyperiso, tracks = hyperiso.trackOfVertex();
+      let wrong = 0;
+      for (let vertex = 0; vertex < mesh.vertexCount; ++vertex) {
+        const [x, t] = [0, 3].map((k) => space.coordinate(k, mesh.levels[4 * vertex + k] * space.scale[k] + space.shift[k]));
+        if (Math.abs(t - merge) > 0.05) wrong += tracks[vertex] !== (t < merge && x > 0 ? 1 : 0);
+      }
+      return wrong;
+    }, MERGE);
+    assert.equal(wrong, 0);
   });
 
   test("a click on an event goes there, by mouse and by key", async () => {
     await page.click('[data-event="merge"]');
-    near(await position(page), 0.6);
-    assert.match(await page.evaluate(() => hyperiso.view.marker.text), /^merge\nt = 0\.600 s$/);
-    await page.keyboard.press("]");
-    near(await position(page), 0.8);
+    near(await position(page), MERGE, 1e-5);
+    assert.match(await page.evaluate(() => hyperiso.view.marker.text), /^merge\nt = 0\.595 s$/);
+    await page.keyboard.press("End");
     await page.keyboard.press("[");
-    near(await position(page), 0.6);
-    await page.click(".mark >> nth=1");
-    near(await position(page), 0.8);
+    near(await position(page), MERGE, 1e-5);
+    await page.keyboard.press("Home");
+    assert.equal(await page.evaluate(() => hyperiso.view.marker), null);
+    await page.keyboard.press("]");
+    near(await position(page), MERGE, 1e-5);
+    await page.keyboard.press("Home");
+    await page.click(".mark");
+    near(await position(page), MERGE, 1e-5);
     await page.click('#presets button:text-is("x")');
     assert.equal(await page.locator(".mark").count(), 0);
     await page.focus('[data-event="merge"]');
     await page.keyboard.press("Enter");
-    near(await position(page), 0.6);
+    near(await position(page), MERGE, 1e-5);
     assert.equal(await page.evaluate(() => hyperiso.axis), 3);
   });
 
   test("hovering a track highlights it", async () => {
     await page.evaluate(() => hyperiso.moveTo(0.2));
     const plain = await picture(page);
-    await page.hover('[data-track="2"]');
-    assert.equal(await state(page, "highlight"), 2);
+    await page.hover('[data-track="1"]');
+    assert.equal(await state(page, "highlight"), 1);
     assert.notEqual((await picture(page)).sum, plain.sum);
     await page.mouse.move(300, 300);
     assert.equal(await state(page, "highlight"), -1);
@@ -564,7 +588,7 @@ describe("surfaces in three dimensions", () => {
     const half = await picture(page);
     await page.check("#hide-beyond");
     assert.ok((await picture(page)).covered < half.covered);
-    await page.click('#presets button:text-is("diagonal")');
+    await page.click('#presets button:text-is("oblique")');
     assert.equal(await page.evaluate(() => hyperiso.axis), -1);
     assert.deepEqual(problems, []);
     await close();

@@ -1,0 +1,267 @@
+#include "hyperiso/view.hpp"
+#include "cli/command.hpp"
+#include "cli/console.hpp"
+#include "cli/dispatch.hpp"
+#include "cli/manual.hpp"
+#include "cli/options.hpp"
+#include "cli/parse.hpp"
+#include "cli/surface.hpp"
+#include "core/memory.hpp"
+#include "hyperiso/track.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fmt/format.h>
+#include <memory>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace hyperiso::cli {
+namespace {
+
+constexpr int lowest_shown = 3;
+constexpr const char* default_size = "256M";
+// For the choice of samples only: what a page turns out to have is checked when it is written.
+constexpr double bytes_per_simplex = 5.5, bytes_of_viewer = 7e5;
+constexpr int most_halvings = 4;
+
+struct View {
+  FieldOptions input;
+  std::string iso;
+  SurfaceOptions surface;
+  std::string path, title, colour_by, size = default_size;
+  bool track = false, open = false;
+  PrintOptions printing;
+  MachineOptions machine;
+};
+
+// What the page shows.
+struct Content {
+  std::unique_ptr<Mesh> mesh;
+  PageOptions page;
+  TrackingGraph tracking;
+  double read_seconds = 0, extract_seconds = 0;
+};
+
+std::string title_of(const View& options) {
+  if (!options.title.empty()) return options.title;
+  return std::filesystem::path(options.input.paths[0]).stem().string();
+}
+
+// Every second sample along the axes of space. Shares the samples.
+Field halved(Field field) {
+  const std::size_t space = field.info.axes.size() - (field.info.has_time ? 1 : 0);
+  for (std::size_t k = 0; k < space; ++k) {
+    Axis& axis = field.info.axes[k];
+    if (axis.count < 4) continue;
+    std::vector<double> kept;
+    for (std::int64_t i = 0; i < axis.count; i += 2) kept.push_back(axis.coordinate(i));
+    if (axis.coordinates.empty()) {
+      axis.origin = kept[0];
+      axis.spacing *= 2;
+      axis.first = 0;
+    } else {
+      axis.coordinates = kept;
+    }
+    axis.count = static_cast<std::int64_t>(kept.size());
+    field.strides[k] *= 2;
+  }
+  return field;
+}
+
+std::unique_ptr<Mesh> surface_of(const View& options, const Field& field, double isovalue) {
+  ExtractOptions extraction = options.surface.extract_options(options.machine);
+  extraction.keep_edges = options.track;
+  ProgressBar bar("extract", options.printing.quiet);
+  extraction.progress = bar.callback();
+  return with_view<lowest_shown>(field, [&](const auto& view) -> std::unique_ptr<Mesh> {
+    return std::make_unique<Mesh>(take(extract(view, isovalue, extraction)));
+  });
+}
+
+// Takes fewer samples until the page should fit; says so in the page and to the caller.
+void fit(const View& options, std::uint64_t size, double isovalue, Field& field, Content& content) {
+  int times = 1;
+  for (int halving = 0; halving < most_halvings; ++halving) {
+    const double expected =
+        bytes_of_viewer + bytes_per_simplex * static_cast<double>(content.mesh->simplex_count());
+    if (expected <= static_cast<double>(size)) break;
+    field = halved(std::move(field));
+    times *= 2;
+    content.mesh = surface_of(options, field, isovalue);
+  }
+  if (times == 1) return;
+  const std::string what =
+      fmt::format("page would have been larger than {}: it shows every {} sample along each axis of space",
+                  byte_size(size), times == 2 ? "second" : fmt::format("{}th", times));
+  content.page.notes.push_back("The " + what + ".");
+  if (!options.printing.quiet) print_warning("the " + what);
+}
+
+void track_components(const View& options, const Field& field, double isovalue, Content& content) {
+  if (!field.info.has_time) fail_usage("--track: no axis of the field is time");
+  FieldSteps steps(field);
+  TrackOptions tracking;
+  tracking.extraction = options.surface.extract_options(options.machine);
+  ProgressBar bar("track", options.printing.quiet);
+  tracking.extraction.progress = bar.callback();
+  content.tracking = take(track(steps, isovalue, tracking));
+  content.page.tracking = &content.tracking;
+}
+
+void read_field(const View& options, std::uint64_t size, Content& content) {
+  const std::vector<double> isovalues = parse_isovalues(options.iso);
+  if (isovalues.size() != 1) fail_usage("--iso: a page shows one isovalue");
+  (void)options.surface.extract_options(options.machine); // wrong ones are told before anything is read
+  const auto reader = options.input.open(options.machine);
+  check_dimension<lowest_shown>(reader->info().dimension(), "the field");
+  const Stopwatch reading;
+  Field field = read_selection(*reader, options.input.selection(reader->info()));
+  content.read_seconds = reading.seconds();
+  check_axes(field.info);
+
+  const Stopwatch extracting;
+  content.mesh = surface_of(options, field, isovalues[0]);
+  fit(options, size, isovalues[0], field, content);
+  if (content.mesh->simplex_count() == 0 && !options.printing.quiet)
+    print_warning(why_empty(field, isovalues[0]));
+  if (options.track) track_components(options, field, isovalues[0], content);
+  content.extract_seconds = extracting.seconds();
+
+  content.page.axes = field.info.axes;
+  content.page.has_time = field.info.has_time;
+  content.page.field_name = field.info.name;
+  content.page.isovalue = isovalues[0];
+  if (!field.info.world) return;
+  transform(*content.mesh, *field.info.world);
+  for (Axis& axis : content.page.axes) axis.count = 0; // the mesh is no longer on the grid
+  if (field.info.has_time) content.page.axes.back() = field.info.axes.back();
+}
+
+void read_surface(const View& options, Content& content) {
+  if (!options.iso.empty()) fail_usage("--iso: the input is a mesh; its isovalue is chosen already");
+  if (options.track) fail_usage("--track: the input is a mesh; tracking needs the field");
+  const Stopwatch reading;
+  content.mesh = std::make_unique<Mesh>(take(read_mesh(options.input.paths[0])));
+  content.read_seconds = reading.seconds();
+  content.page.axes = axes_of(*content.mesh);
+  content.page.has_time = content.mesh->dimension == 4 || content.page.axes.back().name == "t";
+}
+
+// Starts the system's program for files of this kind and does not wait for it.
+void open_page(const std::string& path) {
+  const std::string absolute = std::filesystem::absolute(path).string();
+  const pid_t child = fork();
+  if (child == 0) {
+    if (fork() == 0) {
+      for (const char* opener : {"xdg-open", "open"}) execlp(opener, opener, absolute.c_str(), nullptr);
+      _exit(exit_failure);
+    }
+    _exit(0);
+  }
+  if (child > 0) waitpid(child, nullptr, 0);
+}
+
+void print_outcome(const View& options, const Content& content, double write_seconds) {
+  const std::uint64_t bytes = std::filesystem::file_size(options.path);
+  const Mesh& mesh = *content.mesh;
+  if (options.printing.json) {
+    Json object{
+        {"dimension", mesh.dimension},
+        {"vertices", mesh.vertex_count()},
+        {"simplices", mesh.simplex_count()},
+        {"bytes", bytes},
+        {"notes", content.page.notes},
+        {"seconds",
+         {{"read", content.read_seconds}, {"extract", content.extract_seconds}, {"write", write_seconds}}},
+        {"peak_memory_bytes", peak_memory()}};
+    if (content.page.isovalue) object["isovalue"] = *content.page.isovalue;
+    if (content.page.tracking) object["tracks"] = content.tracking.tracks.size();
+    return print_json(object);
+  }
+  Report report;
+  report.add("vertices", grouped(mesh.vertex_count()));
+  report.add(simplex_noun(mesh.simplex_dimension), grouped(mesh.simplex_count()));
+  if (content.page.tracking)
+    report.add("tracks",
+               fmt::format("{}, {} events", content.tracking.tracks.size(), content.tracking.events.size()));
+  report.add("took", fmt::format("{} to read, {} to extract, {} to write", seconds(content.read_seconds),
+                                 seconds(content.extract_seconds), seconds(write_seconds)));
+  report.add("wrote", fmt::format("{}, {}; open it in a browser", options.path, byte_size(bytes)));
+  print(report.text());
+}
+
+int run(const View& options) {
+  const std::uint64_t size = parse_bytes("--max-size", options.size);
+  const bool from_mesh = options.input.paths.size() == 1 && is_mesh_file(options.input.paths[0]);
+  if (!from_mesh && options.iso.empty()) fail_usage("--iso is required to view a field");
+  Content content;
+  if (from_mesh)
+    read_surface(options, content);
+  else
+    read_field(options, size, content);
+  content.page.title = title_of(options);
+  content.page.colour_by = options.colour_by;
+  content.page.size_limit = size;
+  const Stopwatch writing;
+  {
+    ProgressBar bar("write", options.printing.quiet);
+    content.page.progress = bar.callback();
+    take(write_page(*content.mesh, content.page, options.path));
+  }
+  print_outcome(options, content, writing.seconds());
+  if (options.open) open_page(options.path);
+  return 0;
+}
+
+} // namespace
+
+Command view_command(CLI::App& program) {
+  auto options = std::make_shared<View>();
+  CLI::App* app = program.add_subcommand("view", "one HTML page that plays the surface and cuts it");
+  options->input.add_to(*app, "; or a mesh that 'hyperiso extract' wrote as .vtu");
+  app->add_option("--iso", options->iso, "fields: the isovalue")->type_name("V")->group("Surface");
+  options->surface.add_to(*app);
+  app->add_option("-o,--output", options->path, "the page, a file that ends in .html")
+      ->type_name("PATH")
+      ->required()
+      ->group("Output");
+  app->add_option("--title", options->title, "what it is called; left out: the name of the input")
+      ->type_name("TEXT")
+      ->group("Output");
+  app->add_option("--colour-by", options->colour_by,
+                  "colour at first: solid, component, speed, time, track, the name of an axis or of an "
+                  "attribute of the mesh; the page offers all of them")
+      ->type_name("NAME")
+      ->group("Output");
+  app->add_flag("--track", options->track,
+                "also track the components through time, and show tracks and events under the picture")
+      ->group("Output");
+  app->add_option(
+         "--max-size", options->size,
+         text("how large the page may be; default ", default_size,
+              ". Of a field that would give a larger one, every second sample (or fourth, ...) along "
+              "the axes of space is used, with a warning here and in the page"))
+      ->type_name("SIZE")
+      ->group("Output");
+  app->add_flag("--open", options->open, "open it in the browser")->group("Output");
+  options->printing.add_to(*app);
+  options->machine.add_to(*app);
+  set_manual(
+      *app,
+      {{"view INPUT... --iso V -o PAGE.html [options]", "view MESH -o PAGE.html [options]"},
+       {"Writes one file that opens in any current browser, without a network: it plays the surface through "
+        "time, continuously and exactly, cuts it by any hyperplane of space and time, colours it, reads "
+        "points, "
+        "saves pictures and slices. Surfaces of 3D and 4D fields.",
+        "A page takes about 5 bytes per tetrahedron."},
+       {{"the water through time, coloured by how fast its surface moves",
+         "hyperiso view examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 --colour-by speed -o "
+         "water.html"},
+        {"with what merges and parts on the time line",
+         "hyperiso view examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 --track -o tracked.html"}}});
+  return {app, [options] { return run(*options); }};
+}
+
+} // namespace hyperiso::cli

@@ -1,0 +1,45 @@
+// Prints what a page costs: bytes per tetrahedron, time to open, time per frame when time is scrubbed.
+//
+//   node viewer/test/benchmark.mjs PAGE.html...        (make_viewer_pages FILE.html N makes one)
+import { readFileSync, statSync } from "node:fs";
+import { openBrowser, openPage, ready } from "./browser.mjs";
+
+const browser = await openBrowser();
+for (const file of process.argv.slice(2)) {
+  const text = readFileSync(file, "latin1");
+  const viewer = text.indexOf('<script type="application/json"');
+  const start = performance.now();
+  const { page, problems, close } = await openPage(browser, file, { width: 1280, height: 800 });
+  await page.waitForFunction(() => document.documentElement.dataset.ready === "true", null, { timeout: 300_000 });
+  const opened = (performance.now() - start) / 1000;
+  const result = await page.evaluate(async () => {
+    const app = window.hyperiso;
+    const gl = app.view.renderer.getContext();
+    const pixel = new Uint8Array(4);
+    const frame = (offset) => {
+      const begin = performance.now();
+      app.set({ offset });
+      app.view.render();
+      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel); // waits until it is drawn
+      return performance.now() - begin;
+    };
+    const median = (list) => list.sort((a, b) => a - b)[Math.floor(list.length / 2)];
+    const run = () => median(Array.from({ length: 25 }, (_, i) => frame(app.reach * ((2 * (i + 0.5)) / 25 - 1))));
+    run();
+    const time = run();
+    app.turnTo([1, 1, 1, 1]);
+    const oblique = run();
+    const { mesh } = app;
+    return { time, oblique, simplices: mesh.simplexCount, card: (16 * mesh.vertexCount + 16 * mesh.simplexCount) / mesh.simplexCount };
+  });
+  const { simplices } = result;
+  console.log(`${file}: ${simplices.toLocaleString("en")} tetrahedra`);
+  console.log(`  in the file        ${((statSync(file).size - viewer) / simplices).toFixed(2)} bytes per tetrahedron, and ${(viewer / 1e6).toFixed(2)} MB for the viewer`);
+  console.log(`  on the card        ${result.card.toFixed(1)} bytes per tetrahedron`);
+  console.log(`  opened in          ${opened.toFixed(1)} s`);
+  console.log(`  scrubbing time     ${result.time.toFixed(0)} ms per frame`);
+  console.log(`  oblique plane      ${result.oblique.toFixed(0)} ms per frame`);
+  if (problems.length) console.log(problems);
+  await close();
+}
+await browser.close();
