@@ -22,6 +22,8 @@ def blocks(language):
 class Readme(unittest.TestCase):
     def test_commands_run_in_their_order(self):
         commands = [line for block in blocks("sh") for line in block.splitlines()]
+        if b"\n  view " not in subprocess.run([PROGRAM, "--help"], capture_output=True, check=True).stdout:
+            commands = [command for command in commands if not command.startswith("hyperiso view ")]  # built without
         self.assertGreater(len(commands), 0)
         path = f"{PROGRAM.parent}{os.pathsep}{os.environ['PATH']}"
         with tempfile.TemporaryDirectory() as folder:
