@@ -15,6 +15,7 @@
 #include "hyperiso/result.hpp"
 #include "hyperiso/sample.hpp"
 #include "hyperiso/seeds.hpp"
+#include "hyperiso/self_intersections.hpp"
 #include "hyperiso/slice.hpp"
 #include "hyperiso/statistics.hpp"
 #include "hyperiso/step_source.hpp"
