@@ -46,11 +46,11 @@ std::vector<Instructions> instructions_here() {
   return here;
 }
 
-// By both methods, with all instructions, on one thread and on several with units as small as they get.
+// By all methods, with all instructions, on one thread and on several with units as small as they get.
 template <class T, int D>
 void expect_reference_on_every_path(const FieldView<const T, D>& field, double isovalue,
                                     ExtractOptions options = {}) {
-  for (const Method method : {Method::hull, Method::simplicial}) {
+  for (const Method method : {Method::hull, Method::component, Method::simplicial}) {
     options.method = method;
     const SimplexMesh<D> expected = extract_reference(field, isovalue, options);
     for (const Instructions instructions : instructions_here())
@@ -106,6 +106,17 @@ TEST(Engine, one_cell) {
     expect_reference_on_every_path(noise<float, 3>({2, 2, 2}, seed).view, 0);
     expect_reference_on_every_path(noise<float, 4>({2, 2, 2, 2}, seed).view, 0);
   }
+}
+
+// The table is made as it is used, by several threads at once.
+TEST(Engine, five_dimensions) {
+  expect_reference_on_every_path(noise<float, 5>({2, 2, 2, 2, 2}).view, 0);
+  expect_reference_on_every_path(noise<std::int16_t, 5>({5, 3, 2, 3, 3}).view, 0.5);
+  const auto ball = check::make_field<float, 5>(check::box_grid<5>(5, -1, 1), [](const auto& p) {
+    return 0.7 - std::inner_product(p.begin(), p.end(), p.begin(), 0.0);
+  });
+  expect_reference_on_every_path(ball.view, 0);
+  expect_reference_on_every_path(noise_with_missing<5>({67, 2, 3, 2, 2}, 0.02).view, 0);
 }
 
 TEST(Engine, no_surface) {

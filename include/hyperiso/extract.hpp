@@ -18,18 +18,32 @@ enum class Inside {
 /// How a cell is filled with simplices.
 enum class Method {
   hull, ///< facets of the convex hull of W+ (paper 000): fewest simplices, vertices on the edges of the grid
-  simplicial, ///< cuts of the D! Kuhn simplices of a cell (paper 004): about five times as many, vertices
-              ///< also on diagonals; the level set of the piecewise linear interpolant, so embedded in every
-              ///< dimension
+  component, ///< hulls of the components of the + side (paper 002): as many simplices and vertices, but where
+             ///< a cell is ambiguous the - side is kept together; the surface of `hull` by the other sign
+             ///< rule
+  simplicial,  ///< cuts of the D! Kuhn simplices of a cell (paper 004): about five times as many, vertices
+               ///< also on diagonals; the level set of the piecewise linear interpolant, so embedded in every
+               ///< dimension
+  barycentric, ///< cuts of the 2^(D-1) D! simplices of a cell's barycentric subdivision, whose centres have
+               ///< the mean of their face's samples: what the papers compare with, for comparison only. Slow;
+               ///< two dozen times the simplices
+};
+
+/// How `barycentric` cuts a simplex.
+enum class Cut {
+  midpoints, ///< recursive contour meshing (Weigle and Banks): a point in the middle of each piece that is no
+             ///< simplex; 4 triangles in a tetrahedron, 14 tetrahedra in a 4-simplex
+  staircase, ///< as `simplicial` does: 2 and 3
 };
 
 enum class Precision { f32, f64 };
 
 struct ExtractOptions {
   Method method = Method::hull;
+  Cut cut = Cut::midpoints; ///< of Method::barycentric
   Inside inside = Inside::above;
-  Precision precision = Precision::f32;    ///< of the positions; they are computed in double in any case
-  bool keep_edges = true;                  ///< fill Mesh::edges and Mesh::grid_axes (8 bytes per vertex)
+  Precision precision = Precision::f32; ///< of the positions; they are computed in double in any case
+  bool keep_edges = true; ///< fill Mesh::edges and Mesh::grid_axes (8 bytes per vertex; not barycentric)
   std::uint64_t memory_limit = UINT64_MAX; ///< bytes the surface may take
   int threads = 0;                         ///< 0: one per processor; the result is the same for any number
   Progress progress = {};
@@ -49,8 +63,10 @@ struct ExtractOptions {
 /// nothing is merged by distance. A grid with fewer than two samples along an axis has no cell and no
 /// surface.
 ///
-/// Coordinates are those of the field's axes. Types: all of SampleType; D = 2, 3, 4.
-/// Errors: invalid_isovalue if it is not finite; out_of_memory; cancelled.
+/// Coordinates are those of the field's axes. Types: all of SampleType. Dimensions: hull and component 2 to 6
+/// (tables are made as they are used from 5 on), simplicial 2 to 8, barycentric 2 to 5; from 6 on, and by
+/// barycentric, by a plain loop on one thread. The vertices of `barycentric` come in no order and have no
+/// grid edges. Errors: invalid_isovalue if it is not finite; unsupported_dimension; out_of_memory; cancelled.
 template <class T, int D>
 Result<SimplexMesh<D>> extract(const FieldView<const T, D>& field, double isovalue,
                                const ExtractOptions& options = {});

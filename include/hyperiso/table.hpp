@@ -4,6 +4,7 @@
 /// A table never sees a field; it is generated in exact integer arithmetic in the process that uses it.
 
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <span>
 #include <type_traits>
@@ -15,7 +16,16 @@ namespace hyperiso {
 /// coordinate (bit k of i) along axis k.
 using CubeLabels = std::uint32_t; ///< D <= 5
 template <int D>
-using LabelSet = std::conditional_t<(D <= 5), CubeLabels, std::uint64_t>; ///< D <= 6
+using LabelSet =
+    std::conditional_t<(D <= 5), CubeLabels,
+                       std::conditional_t<D == 6, std::uint64_t, std::bitset<(std::size_t{1} << D)>>>;
+template <int D>
+bool label_of(const LabelSet<D>& labels, unsigned vertex) {
+  if constexpr (D <= 6)
+    return labels >> vertex & 1;
+  else
+    return labels[vertex];
+}
 
 /// Number of the cube edge along `axis` whose lower vertex is `lower` (bit `axis` of it is 0).
 template <int D>

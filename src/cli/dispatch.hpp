@@ -10,44 +10,47 @@
 
 namespace hyperiso::cli {
 
-// The dimensions that extraction is built for.
-constexpr int lowest_dimension = 2, highest_dimension = 4;
+// The dimensions that all verbs are built for; surfaces are extracted, by one method or another, from more.
+constexpr int lowest_dimension = 2, highest_dimension = 4, highest_extracted = 8;
 
-// Calls use(std::integral_constant<int, D>) for the D in [Lowest, highest_dimension] that is `dimension`;
-// fails with a message about `what` if there is none.
-template <int Lowest, class Use>
+template <int D, int Highest, class Use>
+decltype(auto) with_known_dimension(int dimension, Use&& use) {
+  if constexpr (D < Highest)
+    if (dimension > D) return with_known_dimension<D + 1, Highest>(dimension, use);
+  return use(std::integral_constant<int, D>{});
+}
+
+// Calls use(std::integral_constant<int, D>) for the D in [Lowest, Highest] that is `dimension`; fails with a
+// message about `what` if there is none.
+template <int Lowest, int Highest = highest_dimension, class Use>
 decltype(auto) with_dimension(int dimension, const char* what, Use&& use) {
-  static_assert(Lowest <= 4 && highest_dimension == 4);
-  if constexpr (Lowest <= 2)
-    if (dimension == 2) return use(std::integral_constant<int, 2>{});
-  if constexpr (Lowest <= 3)
-    if (dimension == 3) return use(std::integral_constant<int, 3>{});
-  if (dimension == 4) return use(std::integral_constant<int, 4>{});
-  fail_usage(text(what, " has ", dimension, dimension == 1 ? " dimension" : " dimensions", "; from ", Lowest,
-                  " to ", highest_dimension, " are supported"));
+  if (dimension < Lowest || dimension > Highest)
+    fail_usage(text(what, " has ", dimension, dimension == 1 ? " dimension" : " dimensions", "; from ",
+                    Lowest, " to ", Highest, " are supported"));
+  return with_known_dimension<Lowest, Highest>(dimension, use);
 }
 
 // Fails as with_dimension does, before any work.
-template <int Lowest>
+template <int Lowest, int Highest = highest_dimension>
 void check_dimension(int dimension, const char* what) {
-  with_dimension<Lowest>(dimension, what, [](auto) {});
+  with_dimension<Lowest, Highest>(dimension, what, [](auto) {});
 }
 
 // Calls use(view) with the field as a view of its type and dimension.
-template <int Lowest, class Use>
+template <int Lowest, int Highest = highest_dimension, class Use>
 decltype(auto) with_view(const Field& field, Use&& use) {
-  return with_dimension<Lowest>(field.info.dimension(), "the field", [&](auto dimension) {
+  return with_dimension<Lowest, Highest>(field.info.dimension(), "the field", [&](auto dimension) {
     return visit_sample_type(field.info.type, [&](auto sample) {
       return use(field.view<decltype(sample), decltype(dimension)::value>());
     });
   });
 }
 
-// Calls use(mesh) with a mesh in R^D, D >= Lowest, of (D-1)- or D-simplices, as one that knows its
+// Calls use(mesh) with a mesh in R^D, Lowest <= D <= Highest, of (D-1)- or D-simplices, as one that knows its
 // dimensions.
-template <int Lowest, class Use>
+template <int Lowest, int Highest = highest_dimension, class Use>
 decltype(auto) with_simplex_mesh(Mesh&& mesh, Use&& use) {
-  return with_dimension<Lowest>(mesh.dimension, "the mesh", [&](auto dimension) {
+  return with_dimension<Lowest, Highest>(mesh.dimension, "the mesh", [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;
     if (mesh.simplex_dimension == D) return use(VolumeMesh<D>(std::move(mesh)));
     if (mesh.simplex_dimension == D - 1) return use(SimplexMesh<D>(std::move(mesh)));

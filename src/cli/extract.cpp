@@ -17,7 +17,7 @@ struct Extract {
   std::string iso;
   SurfaceOptions surface;
   MeshOutputOptions output;
-  bool measure = false;
+  bool measure = false, self_intersections = false;
   PrintOptions printing;
   MachineOptions machine;
 };
@@ -27,6 +27,7 @@ struct Outcome {
   double isovalue = 0;
   std::uint64_t vertices = 0, simplices = 0, active_cells = 0;
   std::optional<Measure> measure;
+  std::optional<SelfIntersections> self_intersections;
   std::string path;
   double read_seconds = 0, extract_seconds = 0, write_seconds = 0;
 };
@@ -34,7 +35,7 @@ struct Outcome {
 Mesh surface_of(const Field& field, double isovalue, ExtractOptions options, bool quiet) {
   ProgressBar bar("extract", quiet);
   options.progress = bar.callback();
-  Mesh mesh = with_view<lowest_dimension>(
+  Mesh mesh = with_view<lowest_dimension, highest_extracted>(
       field, [&](const auto& view) -> Mesh { return take(extract(view, isovalue, options)); });
   if (field.info.world) transform(mesh, *field.info.world);
   return mesh;
@@ -56,6 +57,8 @@ Outcome make_surface(const Extract& options, const Field& field, double isovalue
   outcome.active_cells = mesh.active_cells;
   if (mesh.simplex_count() == 0 && !options.printing.quiet) print_warning(why_empty(field, isovalue));
   if (options.measure) outcome.measure = take(measure(mesh));
+  if (options.self_intersections)
+    outcome.self_intersections = self_intersections_of(mesh, options.printing.quiet);
 
   if (path.empty()) return outcome;
   const Stopwatch writing;
@@ -79,6 +82,7 @@ Json json_of(const Outcome& outcome, const Extract& options, const FieldInfo& in
                 {"write", outcome.write_seconds}}},
               {"peak_memory_bytes", peak_memory()}};
   if (outcome.measure) object["measure"] = cli::json_of(*outcome.measure);
+  if (outcome.self_intersections) object["self_intersections"] = cli::json_of(*outcome.self_intersections);
   return object;
 }
 
@@ -92,6 +96,7 @@ std::string report_of(const Outcome& outcome, const Extract& options, const Fiel
   report.add("vertices", grouped(outcome.vertices));
   report.add(simplex_noun(k), grouped(outcome.simplices));
   if (outcome.measure) add_measure(report, *outcome.measure, k);
+  if (outcome.self_intersections) add_self_intersections(report, *outcome.self_intersections);
   std::string took =
       seconds(outcome.read_seconds) + " to read, " + seconds(outcome.extract_seconds) + " to extract";
   if (!outcome.path.empty()) took += ", " + seconds(outcome.write_seconds) + " to write";
@@ -118,7 +123,7 @@ int run(const Extract& options) {
   (void)options.surface.extract_options(options.machine); // wrong ones are told before anything is read
   const auto reader = options.input.open(options.machine);
   const int dimension = reader->info().dimension();
-  check_dimension<lowest_dimension>(dimension, "the field");
+  check_dimension<lowest_dimension, highest_extracted>(dimension, "the field");
   if (options.output.wanted()) options.output.check(dimension, dimension - 1, options.output.path);
   const Selection selection = options.input.selection(reader->info());
 
@@ -157,6 +162,7 @@ Command extract_command(CLI::App& program) {
   app->add_flag("--measure", options->measure,
                 "also check and measure the surface: components, Euler characteristic, boundary, area")
       ->group("Output");
+  add_self_intersections_option(*app, options->self_intersections);
   options->printing.add_to(*app);
   options->machine.add_to(*app);
   set_manual(
@@ -164,7 +170,8 @@ Command extract_command(CLI::App& program) {
       {{"extract INPUT... --iso V[,V...] [options]"},
        {"Finds where the field has the value V: a mesh of segments in a 2D field, triangles in 3D, "
         "tetrahedra in "
-        "4D (three axes of space and time). Vertices are shared, simplices oriented with their normals away "
+        "4D (three axes of space and time), and so on. Vertices are shared, simplices oriented with their "
+        "normals away "
         "from the "
         "inside; the mesh is closed except where it meets the end of the data. NaN samples are no data: no "
         "surface touches their cells.",

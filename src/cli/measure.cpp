@@ -16,18 +16,23 @@ namespace {
 
 struct MeasureVerb {
   std::string path;
+  bool self_intersections = false;
   PrintOptions printing;
 };
 
 int run(const MeasureVerb& options) {
   const Mesh mesh = take(read_mesh(options.path));
   const Measure measured = take(measure(mesh));
+  std::optional<SelfIntersections> intersections;
+  if (options.self_intersections) intersections = self_intersections_of(mesh, options.printing.quiet);
   if (options.printing.json) {
-    print_json(Json{{"dimension", mesh.dimension},
-                    {"simplex_dimension", mesh.simplex_dimension},
-                    {"vertices", mesh.vertex_count()},
-                    {"simplices", mesh.simplex_count()},
-                    {"measure", json_of(measured)}});
+    Json object{{"dimension", mesh.dimension},
+                {"simplex_dimension", mesh.simplex_dimension},
+                {"vertices", mesh.vertex_count()},
+                {"simplices", mesh.simplex_count()},
+                {"measure", json_of(measured)}};
+    if (intersections) object["self_intersections"] = json_of(*intersections);
+    print_json(object);
     return 0;
   }
   Report report;
@@ -36,6 +41,7 @@ int run(const MeasureVerb& options) {
   report.add("vertices", grouped(mesh.vertex_count()));
   report.add(simplex_noun(mesh.simplex_dimension), grouped(mesh.simplex_count()));
   add_measure(report, measured, mesh.simplex_dimension);
+  if (intersections) add_self_intersections(report, *intersections);
   print(report.text());
   return 0;
 }
@@ -48,6 +54,7 @@ Command measure_command(CLI::App& program) {
   app->add_option("MESH", options->path, "the mesh: .vtu, .vtp, .ply, .stl, .obj or .off")
       ->required()
       ->group("Input");
+  add_self_intersections_option(*app, options->self_intersections);
   options->printing.add_to(*app);
   set_manual(*app, {{"measure MESH [options]"},
                     {"Counts components and the Euler characteristic, checks that the mesh is a manifold "
@@ -61,6 +68,7 @@ Command measure_command(CLI::App& program) {
                     {{"is this surface closed?", "hyperiso sample ball --dims 20,20,20 -o ball.nrrd"},
                      {"", "hyperiso extract ball.nrrd --iso 0.5 -o ball.ply"},
                      {"", "hyperiso measure ball.ply"},
+                     {"does it pass through itself?", "hyperiso measure ball.ply --self-intersections"},
                      {"numbers for a script", "hyperiso measure ball.ply --json"}}});
   return {app, [options] { return run(*options); }};
 }

@@ -151,9 +151,15 @@ std::vector<double> parse_isovalues(const std::string& iso) {
 }
 
 void SurfaceOptions::add_to(CLI::App& app) {
-  add_text(app, "--method", method, "METHOD", surface_group,
-           "how a cell is filled: hull (default: fewest simplices, vertices on the edges of the grid) or "
-           "simplicial (cuts of the Kuhn simplices, about five times as many)");
+  add_text(
+      app, "--method", method, "METHOD", surface_group,
+      "how a cell is filled: hull (default: fewest simplices, vertices on the edges of the grid), "
+      "component (the same, but an ambiguous cell keeps the outside together), simplicial (cuts of the "
+      "Kuhn simplices, about five times as many; never passes through itself, whatever the dimension) or "
+      "barycentric (cuts of the barycentric subdivision: for comparison, slow)");
+  add_text(app, "--cut", cut, "CUT", surface_group,
+           "of --method barycentric: midpoints (default: recursive contour meshing) or staircase (as "
+           "simplicial: fewer simplices)");
   add_text(app, "--inside", inside, "SIDE", surface_group,
            "which samples are inside: above (default: values >= the isovalue) or below (values <= it). "
            "Normals point away from them; where a cell is ambiguous they stay together");
@@ -169,9 +175,16 @@ ExtractOptions SurfaceOptions::extract_options(const MachineOptions& machine) co
     options.method = Method::hull;
   else if (method == "simplicial")
     options.method = Method::simplicial;
+  else if (method == "component")
+    options.method = Method::component;
+  else if (method == "barycentric")
+    options.method = Method::barycentric;
   else
-    fail_usage(
-        text("--method: '", method, "' is not a method of this version; there are hull and simplicial"));
+    fail_usage(text("--method: '", method,
+                    "' is not a method; there are hull, component, simplicial and barycentric"));
+  if (cut != "midpoints" && cut != "staircase")
+    fail_usage(text("--cut: '", cut, "' is neither midpoints nor staircase"));
+  options.cut = cut == "midpoints" ? Cut::midpoints : Cut::staircase;
   if (inside != "above" && inside != "below")
     fail_usage(text("--inside: '", inside, "' is neither above nor below"));
   options.inside = inside == "above" ? Inside::above : Inside::below;

@@ -63,7 +63,7 @@ std::vector<double> parse_isovalues(const std::string& iso);
 
 // --method, --inside, --precision
 struct SurfaceOptions {
-  std::string method = "hull", inside = "above", precision = "f32";
+  std::string method = "hull", cut = "midpoints", inside = "above", precision = "f32";
 
   void add_to(CLI::App& app);
   // For a surface that is made now, with the memory that is left now.

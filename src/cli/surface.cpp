@@ -78,6 +78,31 @@ void add_measure(Report& report, const Measure& measure, int simplex_dimension) 
              fmt::format("{} {}", grouped(measure.zero_content_simplices), simplex_noun(simplex_dimension)));
 }
 
+void add_self_intersections_option(CLI::App& app, bool& option) {
+  app.add_flag(
+         "--self-intersections", option,
+         "also look for simplices that pass through each other, exactly (slower). There are none in the "
+         "surfaces of up to 4D fields by any method, nor in any dimension by simplicial")
+      ->group("Output");
+}
+
+SelfIntersections self_intersections_of(const Mesh& mesh, bool quiet) {
+  ProgressBar bar("self-intersections", quiet);
+  return take(find_self_intersections(mesh, bar.callback()));
+}
+
+Json json_of(const SelfIntersections& found) {
+  return {{"pairs", found.pairs}, {"examples", found.examples}};
+}
+
+void add_self_intersections(Report& report, const SelfIntersections& found) {
+  std::string value =
+      grouped(found.pairs) + (found.pairs == 1 ? " pair of simplices" : " pairs of simplices");
+  if (!found.examples.empty())
+    value += fmt::format(", the first: {} and {}", found.examples[0][0], found.examples[0][1]);
+  report.add("self-intersections", value);
+}
+
 void check_axes(const FieldInfo& info) {
   for (std::size_t axis = 0; axis < info.axes.size(); ++axis)
     if (info.axes[axis].count < 2) {

@@ -6,6 +6,7 @@
 #include "cli/options.hpp"
 #include "hyperiso/measure.hpp"
 #include "hyperiso/mesh.hpp"
+#include "hyperiso/self_intersections.hpp"
 
 namespace hyperiso::cli {
 
@@ -28,6 +29,12 @@ const char* simplex_noun(int k);
 const char* content_noun(int k);
 
 Json json_of(const Measure& measure);
+// --self-intersections
+void add_self_intersections_option(CLI::App& app, bool& option);
+SelfIntersections self_intersections_of(const Mesh& mesh, bool quiet);
+Json json_of(const SelfIntersections& found);
+void add_self_intersections(Report& report, const SelfIntersections& found);
+
 void add_measure(Report& report, const Measure& measure, int simplex_dimension);
 
 // Fails if no surface can exist: an axis of one sample.

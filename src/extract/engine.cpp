@@ -2,6 +2,7 @@
 
 #include "core/parallel.hpp"
 #include "core/text.hpp"
+#include "extract/barycentric.hpp"
 #include "extract/missing.hpp"
 #include "extract/units.hpp"
 #include "extract/vertex_output.hpp"
@@ -20,7 +21,8 @@ class Engine {
         grid_(samples.dims), workers_(worker_count(options.threads)),
         kernels_(kernels<D, M>(engine_options.instructions)),
         row_kernels_(row_kernels(samples.test.type, engine_options.instructions)),
-        table_(march_table<D, M>(form)), plan_(plan_units(grid_, workers_, engine_options.unit_samples)) {}
+        table_(march_table<D>(options.method, form)),
+        plan_(plan_units(grid_, workers_, engine_options.unit_samples)) {}
 
   Status run() {
     prepare_numbers();
@@ -254,9 +256,11 @@ class Engine {
 template <int D>
 Status run_engine(const Samples<D>& samples, TableForm form, const ExtractOptions& options,
                   const EngineOptions& engine_options, SimplexMesh<D>& mesh) {
-  return options.method == Method::hull
-             ? Engine<D, Method::hull>(samples, form, options, engine_options, mesh).run()
-             : Engine<D, Method::simplicial>(samples, form, options, engine_options, mesh).run();
+  if (options.method == Method::barycentric) return extract_barycentric(samples, form, options, mesh);
+  if (options.method == Method::simplicial)
+    return Engine<D, Method::simplicial>(samples, form, options, engine_options, mesh).run();
+  // Both methods that are left have vertices on the same edges; only their tables differ.
+  return Engine<D, Method::hull>(samples, form, options, engine_options, mesh).run();
 }
 
 template Status run_engine(const Samples<2>&, TableForm, const ExtractOptions&, const EngineOptions&,
@@ -265,5 +269,7 @@ template Status run_engine(const Samples<3>&, TableForm, const ExtractOptions&, 
                            SimplexMesh<3>&);
 template Status run_engine(const Samples<4>&, TableForm, const ExtractOptions&, const EngineOptions&,
                            SimplexMesh<4>&);
+template Status run_engine(const Samples<5>&, TableForm, const ExtractOptions&, const EngineOptions&,
+                           SimplexMesh<5>&);
 
 } // namespace hyperiso

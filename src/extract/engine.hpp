@@ -15,7 +15,8 @@
 //
 // Phase 2, emit (kernels/emit.hpp). The codes alone tell how the numbers of the vertices go on along a row of
 // cells (cell_edges.hpp has the numbering). A table (march_table.hpp) gives the simplices of a code; their
-// corners are looked up among the numbers of the cell's edges and written out.
+// corners are looked up among the numbers of the cell's edges and written out. In five dimensions the table
+// is made as it is used (kernels/emit_on_demand.hpp).
 //
 // Threads (units.hpp, vertex_output.hpp). The rows are parted into units, in memory order; a worker takes the
 // next unit when it has done one. A worker cannot know how many vertices the units before its own will give:

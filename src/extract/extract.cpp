@@ -1,11 +1,29 @@
 #include "hyperiso/extract.hpp"
 
 #include "core/text.hpp"
+#include "extract/barycentric.hpp"
 #include "extract/extract_with.hpp"
+#include "extract/reference.hpp"
 
 #include <new>
 
 namespace hyperiso {
+namespace {
+
+int highest_dimension(Method method) {
+  if (method == Method::simplicial) return highest_simplicial_dimension;
+  return method == Method::barycentric ? highest_barycentric_dimension : highest_hull_dimension;
+}
+
+Status check_dimension(Method method, int dimension) {
+  if (dimension <= highest_dimension(method)) return {};
+  return Error{Code::unsupported_dimension,
+               text("the field has ", dimension, " dimensions; the methods hull and component work in up to ",
+                    highest_hull_dimension, ", barycentric in up to ", highest_barycentric_dimension,
+                    ", simplicial in up to ", highest_simplicial_dimension)};
+}
+
+} // namespace
 
 template <class T, int D>
 Status extract_into(const FieldView<const T, D>& field, double isovalue, const ExtractOptions& options,
@@ -15,8 +33,12 @@ Status extract_into(const FieldView<const T, D>& field, double isovalue, const E
   if (options.threads < 0)
     return Error{Code::invalid_argument,
                  text("the number of threads is ", options.threads, "; it must be positive, or 0 for all")};
+  if (Status status = check_dimension(options.method, D); !status) return status;
   try {
-    return extract_with(field, isovalue, options, EngineOptions{}, mesh);
+    if constexpr (D <= 5)
+      return extract_with(field, isovalue, options, EngineOptions{}, mesh);
+    else
+      return extract_plainly(field, isovalue, options, mesh);
   } catch (const std::bad_alloc&) {
     return Error{Code::out_of_memory, "not enough memory for the surface"};
   }
@@ -47,5 +69,9 @@ Result<SimplexMesh<D>> extract(const FieldView<const T, D>& field, double isoval
 HYPERISO_INSTANTIATE_TYPES(2)
 HYPERISO_INSTANTIATE_TYPES(3)
 HYPERISO_INSTANTIATE_TYPES(4)
+HYPERISO_INSTANTIATE_TYPES(5)
+HYPERISO_INSTANTIATE_TYPES(6)
+HYPERISO_INSTANTIATE_TYPES(7)
+HYPERISO_INSTANTIATE_TYPES(8)
 
 } // namespace hyperiso

@@ -14,7 +14,8 @@ Status extract_with(const FieldView<const T, D>& field, double isovalue, const E
   const auto dims = field.dims();
   mesh.grid_axes.clear();
   mesh.attributes.clear();
-  if (options.keep_edges) mesh.grid_axes.assign(field.grid.axes.begin(), field.grid.axes.end());
+  if (options.keep_edges && options.method != Method::barycentric)
+    mesh.grid_axes.assign(field.grid.axes.begin(), field.grid.axes.end());
   const Samples<D> samples = samples_of(field, isovalue, options.inside);
   if (samples.test.never || std::ranges::any_of(dims, [](std::int64_t count) { return count < 2; })) {
     mesh.positions.reset(0, options.precision == Precision::f64);

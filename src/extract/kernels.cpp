@@ -53,8 +53,10 @@ Kernels<D, M> kernels([[maybe_unused]] Instructions instructions) {
 template Kernels<2, Method::hull> kernels<2, Method::hull>(Instructions);
 template Kernels<3, Method::hull> kernels<3, Method::hull>(Instructions);
 template Kernels<4, Method::hull> kernels<4, Method::hull>(Instructions);
+template Kernels<5, Method::hull> kernels<5, Method::hull>(Instructions);
 template Kernels<2, Method::simplicial> kernels<2, Method::simplicial>(Instructions);
 template Kernels<3, Method::simplicial> kernels<3, Method::simplicial>(Instructions);
 template Kernels<4, Method::simplicial> kernels<4, Method::simplicial>(Instructions);
+template Kernels<5, Method::simplicial> kernels<5, Method::simplicial>(Instructions);
 
 } // namespace hyperiso

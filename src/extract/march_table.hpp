@@ -5,10 +5,13 @@
 #include "hyperiso/number_array.hpp"
 
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
 namespace hyperiso {
 
+// The whole table, for D <= 4.
 template <int D>
 struct MarchTable {
   static constexpr std::uint32_t codes = 1u << (1 << D);
@@ -20,6 +23,9 @@ struct MarchTable {
   // So many bytes past the last entry may be read.
   static constexpr std::size_t padding = 64;
 };
+// In five dimensions there are 2^32 codes: entries are made when they occur, and kept in a bounded cache.
+template <>
+struct MarchTable<5>;
 
 // How a table is taken.
 struct TableForm {
@@ -28,9 +34,37 @@ struct TableForm {
                                 // its order, and axis k is axis k + 1
 };
 
-// The table of a method, built at the first call in the process; thread-safe, immutable. `corners` of an
-// entry are in the order of the method's own table.
-template <int D, Method M>
-const MarchTable<D>& march_table(TableForm form);
+// The table of a method that has its vertices on edges of the grid (`hull`, `component`) or of the Kuhn grid
+// (`simplicial`), built at the first call in the process; thread-safe. `corners` of an entry are in the order
+// of the method's own table.
+template <int D>
+const MarchTable<D>& march_table(Method method, TableForm form);
+
+// What one worker looks up.
+template <int D>
+class MarchTableReader {
+ public:
+  explicit MarchTableReader(const MarchTable<D>& table) : count_(table.count.data()) {}
+  std::size_t simplex_count(std::uint32_t code) const { return count_[code]; }
+
+ private:
+  const std::uint8_t* count_;
+};
+
+// Compiled once, not with each set of instructions.
+template <>
+class MarchTableReader<5> {
+ public:
+  explicit MarchTableReader(const MarchTable<5>& table);
+  ~MarchTableReader();
+
+  // 5 slots for each simplex; valid until the next call.
+  std::span<const std::uint8_t> corners(std::uint32_t code);
+  std::size_t simplex_count(std::uint32_t code);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 } // namespace hyperiso

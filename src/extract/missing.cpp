@@ -74,5 +74,6 @@ PresentCells find_present_cells(const Samples<D>& samples, const RowGrid<D>& gri
 template PresentCells find_present_cells(const Samples<2>&, const RowGrid<2>&, const RowKernels&, int);
 template PresentCells find_present_cells(const Samples<3>&, const RowGrid<3>&, const RowKernels&, int);
 template PresentCells find_present_cells(const Samples<4>&, const RowGrid<4>&, const RowKernels&, int);
+template PresentCells find_present_cells(const Samples<5>&, const RowGrid<5>&, const RowKernels&, int);
 
 } // namespace hyperiso

@@ -360,6 +360,9 @@ Result<TracedSurface<D>> extract_from_seeds(const LazyField<D>& field, double is
                                             const ExtractOptions& options) {
   if (!std::isfinite(isovalue))
     return Error{Code::invalid_isovalue, text("the isovalue is ", isovalue, "; it must be a finite number")};
+  if (options.method == Method::barycentric)
+    return Error{Code::invalid_argument,
+                 "surfaces are traced by the methods hull, component and simplicial, not by barycentric"};
   try {
     return options.inside == Inside::above ? trace<D, true>(field, isovalue, seeds, options)
                                            : trace<D, false>(field, isovalue, seeds, options);

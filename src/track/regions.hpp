@@ -119,8 +119,10 @@ class Regions {
         add(Kind::inside, -1, 0);
         add(Kind::outside, -1, 0);
       } else {
-        add(Kind::inside, -1, 1);
-        if (moved == 1) add(Kind::outside, 0, 0);
+        // A cell joins all its samples of one side, those of the other only along its edges.
+        const bool joins_outside = method == Method::component;
+        add(joins_outside ? Kind::outside : Kind::inside, -1, 1);
+        if (moved == 1) add(joins_outside ? Kind::inside : Kind::outside, 0, 0);
       }
     }
     return result;

@@ -179,6 +179,9 @@ Result<TrackingGraph> track(StepSource& source, double isovalue, const TrackOpti
                  text("tracking needs at least 2 steps; the field has ", steps.count)};
   if (!steps.increasing())
     return Error{Code::invalid_argument, "tracking needs times that increase from step to step"};
+  if (options.extraction.method == Method::barycentric)
+    return Error{Code::invalid_argument,
+                 "tracking works with the methods hull, component and simplicial, not with barycentric"};
   try {
     return visit_sample_type(info.type, [&]<class T>(T) -> Result<TrackingGraph> {
       if (info.dimension() == 3) return TrackingRun<T, 3>(source, isovalue, options).run();

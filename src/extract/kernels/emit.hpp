@@ -4,7 +4,7 @@
 // Along a row the vertices of each direction are numbered on. So it takes only the codes to follow the number
 // of every edge of the cell: where a column's labels differ at the ends of an edge, there is one more.
 
-#include "extract/kernels/prelude.hpp"
+#include "extract/kernels/emit_on_demand.hpp"
 
 namespace hyperiso {
 namespace {
@@ -428,7 +428,10 @@ class Emit {
 
 template <int D, Method M, class Index>
 void emit(const EmitJob<D>& job) {
-  Emit<D, M, Index>(job).run();
+  if constexpr (D <= 4)
+    Emit<D, M, Index>(job).run();
+  else
+    EmitOnDemand<D, M, Index>(job).run();
 }
 
 } // namespace

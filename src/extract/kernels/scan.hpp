@@ -365,9 +365,9 @@ class Scan {
   // How many simplices the unit's cells hold.
   std::uint64_t count_simplices() const {
     std::uint64_t simplices = 0;
-    const std::uint8_t* count = job_.table->count.data();
+    MarchTableReader<D> table(*job_.table);
     for (std::size_t cell = job_.result->first_code; cell < cells_.code_count; ++cell)
-      simplices += count[cells_.codes[cell]];
+      simplices += table.simplex_count(cells_.codes[cell]);
     return simplices;
   }
 
