@@ -99,6 +99,21 @@ class Json(Case):
         self.assertEqual(len(measure["vector_area"]), 3)
         self.assertAlmostEqual(measure["content"], 3.14, delta=0.3)
 
+    def test_methods_and_self_intersections(self):
+        path = self.sample("noise", "3,3,3,2,2")
+        sizes = {}
+        for method in ("hull", "component", "simplicial", "barycentric"):
+            found = self.ok("extract", path, "--iso", "0.5", "--method", method, "--json").json()
+            self.assertEqual(found["method"], method)
+            sizes[method] = found["simplices"]
+        staircase = self.ok("extract", path, "--iso", "0.5", "--method", "barycentric", "--cut", "staircase", "--json")
+        self.assertLess(staircase.json()["simplices"], sizes["barycentric"])
+        self.sample("ball", path="ball.nrrd")
+        run = ("ball.nrrd", "--iso", "0.5", "-o", "ball.ply", "--self-intersections", "--json")
+        self.assertEqual(self.ok("extract", *run).json()["self_intersections"], {"pairs": 0, "examples": []})
+        found = self.ok("measure", "ball.ply", "--self-intersections", "--json").json()
+        self.assertEqual(found["self_intersections"], {"pairs": 0, "examples": []})
+
     def test_several_isovalues_are_surfaces(self):
         path = self.sample()
         found = self.ok("extract", path, "--iso", "0.4,0.5", "--json", "-o", "s.ply").json()
@@ -179,7 +194,7 @@ class WrongUsage(Case):
                 ["extract", field, "--iso", "1", "--foo"], ["extract", field, "--iso", "1", "--foo", "2"],
                 ["extract", field, "--iso", "0.5", "--iso", "0.6"], ["extract", field, "--iso", "0.5,0.5"],
                 ["extract", field, "--iso", "0.5", "--method", "cubes"], ["extract", field, "--iso", "0.5", "--inside", "out"],
-                ["extract", field, "--iso", "0.5", "--method", "barycentric"],
+                ["extract", field, "--iso", "0.5", "--method", "cubes"],
                 ["extract", field, "--iso", "0.5", "--precision", "f16"],
                 ["extract", field, "--iso", "0.5", "--threads", "0"], ["extract", field, "--iso", "0.5", "--threads", "two"],
                 ["extract", field, "--iso", "0.5", "--memory", "much"], ["extract", field, "--iso", "0.5", "--memory", "-1"],
@@ -230,7 +245,9 @@ class WrongUsage(Case):
     def test_dimension_says_what_is_supported(self):
         self.sample("ball", "4,4,4,4,4", "five.nrrd")
         self.sample("ball", "4,4", "two.nrrd")
-        self.assert_refused(2, "extract", "five.nrrd", "--iso", "0.5", words=["5", "2 to 4"])
+        self.sample("ball", "2,2,2,2,2,2,2", "seven.nrrd")
+        self.assert_refused(2, "extract", "seven.nrrd", "--iso", "0.5", words=["7", "simplicial in up to 8"])
+        self.assert_refused(2, "slice", "five.nrrd", "--iso", "0.5", "--time", "0", words=["5", "3 to 4"])
         self.assert_refused(2, "slice", "two.nrrd", "--iso", "0.5", "--time", "0", words=["2", "3 to 4"])
 
     def test_axis_of_one_sample_is_named(self):
