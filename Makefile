@@ -4,12 +4,13 @@
 
 processors := $(shell getconf _NPROCESSORS_ONLN)
 
-.PHONY: help demo build test clean
+.PHONY: help demo build test bench clean
 
 help:
 	@echo "make demo    the main job on a bundled simulation; the results go to demo/"
 	@echo "make build   the optimised program: build/release/bin/hyperiso"
 	@echo "make test    builds everything and runs the tests"
+	@echo "make bench   what extraction costs, beside the memory's limit and other programs (docs/performance.md)"
 	@echo "make clean   removes what the others made"
 
 build:
@@ -27,6 +28,12 @@ test:
 	cmake --preset release
 	cmake --build --preset release
 	ctest --preset release --parallel $(processors)
+
+bench:
+	@tools/install_dependencies build bench
+	cmake --preset release -D HYPERISO_BUILD_BENCH=ON
+	cmake --build --preset release --target hyperiso_bench
+	@build/release/bin/hyperiso_bench
 
 clean:
 	rm -rf build demo
