@@ -65,11 +65,15 @@ struct CellEdges {
       list<across>(true); // from the left to the right
 
   // Slots for the vertex numbers of a cell's edges: those of the left column, some of those across, those of
-  // the right column, the rest. For D = 4 by hull these are two vectors of 16, for D = 3 one and a half of 8.
-  static constexpr unsigned half = M == Method::hull && D == 4 ? across / 2 : 0;
-  static constexpr unsigned left_slot = 0, first_across_slot = in_column, right_slot = in_column + half,
-                            second_across_slot = 2 * in_column + half;
-  static constexpr unsigned slots = 2 * in_column + across;
+  // the right column, the rest. Laid out for vectors of 16: for D = 4 by hull they fill two; by the
+  // simplicial method each of the three kinds starts on a pair of its own.
+  static constexpr bool fills_vectors = M == Method::hull && D == 4,
+                        pairs_of_vectors = M == Method::simplicial && D == 4;
+  static constexpr unsigned half = fills_vectors ? across / 2 : 0;
+  static constexpr unsigned left_slot = 0, first_across_slot = in_column,
+                            right_slot = pairs_of_vectors ? 32 : in_column + half,
+                            second_across_slot = pairs_of_vectors ? 64 : right_slot + in_column,
+                            slots = second_across_slot + across - half;
 
   // The slot of the edge between two corners of the cube, numbered as in table.hpp (bit k: axis k).
   static constexpr unsigned slot(unsigned lower_corner, unsigned upper_corner) {

@@ -92,11 +92,10 @@ constexpr auto crossed_in_column = [] {
 }();
 template <int D, Method M>
 constexpr auto crossed_mask = [] {
-  std::array<std::uint16_t, 1 << CellEdges<D, M>::column> masks{};
+  std::array<std::uint32_t, 1 << CellEdges<D, M>::column> masks{};
   for (unsigned labels = 0; labels < masks.size(); ++labels)
     for (unsigned edge = 0; edge < CellEdges<D, M>::in_column; ++edge)
-      masks[labels] =
-          static_cast<std::uint16_t>(masks[labels] | crossed_in_column<D, M>[labels][edge] << edge);
+      masks[labels] |= std::uint32_t{crossed_in_column<D, M>[labels][edge]} << edge;
   return masks;
 }();
 
@@ -116,6 +115,22 @@ constexpr AcrossLabels<D, M> across_labels = [] {
       table.upper[labels][edge] = labels >> Edges::across_edges[edge].upper & 1;
     }
   return table;
+}();
+
+// The same as bit masks.
+template <int D, Method M>
+struct AcrossMask {
+  std::array<std::uint32_t, 1 << CellEdges<D, M>::column> lower{}, upper{};
+};
+template <int D, Method M>
+constexpr AcrossMask<D, M> across_mask = [] {
+  AcrossMask<D, M> masks;
+  for (unsigned labels = 0; labels < masks.lower.size(); ++labels)
+    for (unsigned edge = 0; edge < CellEdges<D, M>::across; ++edge) {
+      masks.lower[labels] |= std::uint32_t{across_labels<D, M>.lower[labels][edge]} << edge;
+      masks.upper[labels] |= std::uint32_t{across_labels<D, M>.upper[labels][edge]} << edge;
+    }
+  return masks;
 }();
 
 // The rows of a run of cells, by their place in a column: the numbers of the first vertices of each direction
@@ -205,7 +220,8 @@ class CellNumbers<4, Method::hull, std::uint32_t> {
   }
   void enter(unsigned left, unsigned) {
     right_ = _mm512_mask_mov_epi32(right_, column_lanes, left_);
-    right_ = _mm512_mask_add_epi32(right_, crossed_mask<4, Method::hull>[left], right_, _mm512_set1_epi32(1));
+    right_ = _mm512_mask_add_epi32(right_, static_cast<__mmask16>(crossed_mask<4, Method::hull>[left]),
+                                   right_, _mm512_set1_epi32(1));
   }
   void write(const std::uint8_t* corners, std::uint32_t count, std::uint32_t* out) const {
     // Up to 12 simplices without a branch, for how many a cell has is hard to guess.
@@ -264,8 +280,8 @@ class CellNumbers<3, Method::hull, std::uint32_t> {
     across_ = _mm_add_epi32(across_, _mm_loadu_si128(reinterpret_cast<const __m128i*>(across)));
   }
   void enter(unsigned left, unsigned) {
-    const __m128i right =
-        _mm_mask_add_epi32(left_, crossed_mask<3, Method::hull>[left], left_, _mm_set1_epi32(1));
+    const __m128i right = _mm_mask_add_epi32(
+        left_, static_cast<__mmask8>(crossed_mask<3, Method::hull>[left]), left_, _mm_set1_epi32(1));
     slots_ = _mm512_inserti32x4(_mm512_castsi128_si512(left_), right, 1);
     slots_ = _mm512_inserti32x4(slots_, across_, 2);
     left_ = right;
@@ -285,6 +301,68 @@ class CellNumbers<3, Method::hull, std::uint32_t> {
  private:
   __m128i left_, across_;
   __m512i slots_;
+};
+
+// Pairs of vectors hold the slots of either column and those across; of each a permutation looks up 16
+// corners, and the slots' upper bits choose among them.
+template <>
+class CellNumbers<4, Method::simplicial, std::uint32_t> {
+ public:
+  using Edges = CellEdges<4, Method::simplicial>;
+
+  void start(const RunStart<4>& run) {
+    std::uint32_t in_column[32] = {}, across[32] = {};
+    for (unsigned edge = 0; edge < Edges::in_column; ++edge)
+      in_column[edge] = first<std::uint32_t, Method::simplicial>(run, Edges::in_column_edges[edge], false);
+    for (unsigned edge = 0; edge < Edges::across; ++edge)
+      across[edge] = first<std::uint32_t, Method::simplicial>(run, Edges::across_edges[edge], true);
+    right_ = left_ = load(in_column);
+    across_ = load(across);
+  }
+  void skip(const std::uint32_t* in_column, const std::uint32_t* across) {
+    std::uint32_t padded[2][32] = {};
+    std::copy_n(in_column, Edges::in_column, padded[0]);
+    std::copy_n(across, Edges::across, padded[1]);
+    left_ = {_mm512_add_epi32(left_.low, load(padded[0]).low),
+             _mm512_add_epi32(left_.high, load(padded[0]).high)};
+    across_ = {_mm512_add_epi32(across_.low, load(padded[1]).low),
+               _mm512_add_epi32(across_.high, load(padded[1]).high)};
+  }
+  void enter(unsigned left, unsigned) { right_ = counted(left_, crossed_mask<4, Method::simplicial>[left]); }
+  void write(const std::uint8_t* corners, std::uint32_t count, std::uint32_t* out) const {
+    const std::uint8_t* end = corners + count;
+    do {
+      const __m512i slots = _mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(corners)));
+      const __m512i in_left = _mm512_permutex2var_epi32(left_.low, slots, left_.high);
+      const __m512i in_right = _mm512_permutex2var_epi32(right_.low, slots, right_.high);
+      const __m512i is_across = _mm512_permutex2var_epi32(across_.low, slots, across_.high);
+      __m512i number =
+          _mm512_mask_mov_epi32(in_left, _mm512_test_epi32_mask(slots, _mm512_set1_epi32(32)), in_right);
+      number = _mm512_mask_mov_epi32(number, _mm512_test_epi32_mask(slots, _mm512_set1_epi32(64)), is_across);
+      _mm512_storeu_si512(out, number);
+      corners += 16, out += 16;
+    } while (corners < end);
+  }
+  void leave(unsigned left, unsigned right) {
+    left_ = right_;
+    across_ = counted(across_, across_mask<4, Method::simplicial>.lower[left] ^
+                                   across_mask<4, Method::simplicial>.upper[right]);
+  }
+
+ private:
+  struct Pair {
+    __m512i low, high;
+  };
+  static Pair load(const std::uint32_t* from) {
+    return {_mm512_loadu_si512(from), _mm512_loadu_si512(from + 16)};
+  }
+  // One more where a bit is set.
+  static Pair counted(Pair numbers, std::uint32_t bits) {
+    const __m512i one = _mm512_set1_epi32(1);
+    return {_mm512_mask_add_epi32(numbers.low, static_cast<__mmask16>(bits), numbers.low, one),
+            _mm512_mask_add_epi32(numbers.high, static_cast<__mmask16>(bits >> 16), numbers.high, one)};
+  }
+  Pair left_, right_, across_;
 };
 
 #elif defined(HYPERISO_AVX2)

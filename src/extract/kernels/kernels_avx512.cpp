@@ -7,6 +7,7 @@
 #pragma GCC target("avx2,bmi,bmi2,lzcnt,popcnt,avx512f,avx512bw,avx512vl,avx512dq,avx512vbmi,avx512vbmi2")
 // GCC 12 warns of its own intrinsics, which leave masked-out lanes undefined on purpose.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#pragma GCC diagnostic ignored "-Wuninitialized"
 #define HYPERISO_AVX512
 #define HYPERISO_INSTRUCTIONS avx512
 #include "extract/kernels/instantiate.hpp"

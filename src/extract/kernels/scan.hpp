@@ -290,7 +290,8 @@ class Scan {
     const std::size_t first_code = cells_.code_count;
     if (!find_active_words(masks)) return;
     make_columns(masks);
-    const std::size_t most = first_code + static_cast<std::size_t>(64 * words_);
+    // `add_cells` may write a word's codes whole, wherever its cells begin.
+    const std::size_t most = first_code + static_cast<std::size_t>(64 * words_ + 64);
     if (most > cells_.codes.size()) cells_.codes.resize(std::max(2 * cells_.codes.size(), most));
     if (job_.present->all() || row_of_cells_is_present()) {
       for (std::int64_t word = 0; word < words_; ++word) add_cells(active_[word], word);
@@ -344,6 +345,14 @@ class Scan {
     typename Cells<D>::Code* codes = cells_.codes.data() + cells_.code_count;
     cells_.code_count += static_cast<std::size_t>(std::popcount(active));
 #if defined(HYPERISO_AVX512)
+    if constexpr (D == 3) {
+      const __m512i left = _mm512_maskz_compress_epi8(active, _mm512_loadu_si512(columns));
+      const __m512i right = _mm512_maskz_compress_epi8(active, _mm512_loadu_si512(columns + 1));
+      const __m512i both = _mm512_or_si512(left, _mm512_slli_epi16(right, 4)); // labels of 4 bits
+      _mm512_storeu_si512(codes, _mm512_cvtepu8_epi16(_mm512_castsi512_si256(both)));
+      _mm512_storeu_si512(codes + 32, _mm512_cvtepu8_epi16(_mm512_extracti64x4_epi64(both, 1)));
+      return;
+    }
     if constexpr (D == 4) {
       const __m512i left = _mm512_maskz_compress_epi8(active, _mm512_loadu_si512(columns));
       const __m512i right = _mm512_maskz_compress_epi8(active, _mm512_loadu_si512(columns + 1));

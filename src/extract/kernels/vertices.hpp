@@ -48,9 +48,9 @@ struct EdgeGroup {
   std::array<const double*, M == Method::hull ? 1 : D> lower;
   std::uint32_t varies; // all bits where the edges run along axis 0, else none
   unsigned direction;
-  std::size_t layer;                               // index of the row along the last axis
-  GridEdge edge;                                   // the number of the edge that would end at x = 0
-  std::array<std::byte, D * sizeof(double)> start; // position of the row's first sample, f32 or f64
+  std::size_t layer;      // index of the row along the last axis
+  GridEdge edge;          // the number of the edge that would end at x = 0
+  const std::byte* start; // position of the row's first sample, f32 or f64
 };
 
 template <int D, Method M>
@@ -81,18 +81,19 @@ class EdgeQueue {
     row_ = row;
     layer_ = static_cast<std::size_t>(index[D - 1]);
     row_samples_ = samples;
+    // A row without edges leaves its place to the next.
+    if (group_count_ > 0 && groups_[group_count_ - 1].start == starts_[row_count_].data()) ++row_count_;
     for (int axis = 0; axis < D; ++axis) {
       here_[axis] = samples_.coordinates[axis].data() + index[axis];
       if (wide_)
-        std::memcpy(start_.data() + axis * sizeof(double), here_[axis], sizeof(double));
-      else {
-        const auto coordinate = static_cast<float>(*here_[axis]);
-        std::memcpy(start_.data() + axis * sizeof(float), &coordinate, sizeof(float));
-      }
+        write_start(axis, *here_[axis]);
+      else
+        write_start(axis, static_cast<float>(*here_[axis]));
     }
   }
   // Adds the crossed edges whose upper ends are the set bits of word `word` of the row.
   void add(std::uint64_t bits, std::int64_t word) {
+    if (bits == 0) return;
     const auto count = static_cast<std::size_t>(std::popcount(bits));
     write_bit_numbers(bits, static_cast<std::uint32_t>(64 * word), upper_.data() + count_);
     const auto group = static_cast<std::uint32_t>(group_count_);
@@ -114,7 +115,7 @@ class EdgeQueue {
     group.direction = direction;
     group.layer = layer_;
     group.edge = (static_cast<GridEdge>(row_) << D | direction) * static_cast<GridEdge>(samples_.dims[0]);
-    group.start = start_;
+    group.start = starts_[row_count_].data();
     if constexpr (M == Method::hull)
       group.lower[0] = here_[std::countr_zero(direction)] - 1;
     else
@@ -141,11 +142,17 @@ class EdgeQueue {
       for (std::size_t i = 0; i < count_; ++i) edges[i] = groups_[group_[i]].edge + upper_[i];
     }
     batch.count += count_;
-    count_ = grouped_ = group_count_ = 0;
+    count_ = grouped_ = group_count_ = row_count_ = 0;
   }
 
  private:
   static constexpr std::size_t enough = 512;
+
+  template <class Real>
+  void write_start(int axis, Real coordinate) {
+    std::memcpy(starts_[row_count_].data() + static_cast<std::size_t>(axis) * sizeof(Real), &coordinate,
+                sizeof(Real));
+  }
 
   void make_room(VertexBatch& batch, std::size_t more) const {
     if (batch.count + more <= batch.capacity) return;
@@ -195,7 +202,7 @@ class EdgeQueue {
         const double* lower = group.lower[M == Method::hull ? 0 : axis] + offset;
         return static_cast<Real>(lower[0] + weight[i] * (lower[1] - lower[0]));
       };
-      std::memcpy(position, group.start.data(), D * sizeof(Real));
+      std::memcpy(position, group.start, D * sizeof(Real));
       if constexpr (M == Method::hull) {
         // One axis moves; where it is axis 0, the second line has the last word.
         const int axis = std::countr_zero(group.direction);
@@ -217,11 +224,14 @@ class EdgeQueue {
   std::int64_t row_ = 0;
   std::size_t layer_ = 0;
   const std::byte* row_samples_ = nullptr;
-  std::array<const double*, D> here_{};               // coordinates of its first sample
-  std::array<std::byte, D * sizeof(double)> start_{}; // the same as a position
+  std::array<const double*, D> here_{}; // coordinates of its first sample
 
   std::vector<EdgeGroup<D, M>> groups_{256};
   std::size_t group_count_ = 0;
+  // Positions of the first samples of the rows that have groups, and of the current row. Not in the groups:
+  // what was written in parts and is read as a whole at once makes the processor wait.
+  std::vector<std::array<std::byte, D * sizeof(double)>> starts_{enough + 1};
+  std::size_t row_count_ = 0;
   std::vector<std::uint32_t> upper_; // index along axis 0 of the upper end of each edge
   std::vector<std::uint32_t> group_; // of each edge
   std::vector<double> lower_values_, upper_values_;
