@@ -86,6 +86,7 @@ class Engine {
     });
     if (cancelled_) return cancelled();
     if (found_missing_) return {};
+    if (!report(scan_share)) return cancelled();
     for (const UnitCells& unit : unit_cells_) {
       vertices_ += unit.vertices;
       simplices_ += unit.simplices;
@@ -215,7 +216,7 @@ class Engine {
         if (worker == 0 && !report(scan_share + (1 - scan_share) * share)) stopped = true;
       }
     });
-    if (cancelled_) return cancelled();
+    if (cancelled_ || !report(1)) return cancelled();
     return {};
   }
 
