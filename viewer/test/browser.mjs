@@ -11,7 +11,7 @@ export async function openBrowser() {
 }
 
 /// Opens a page file; `problems` collects what must not happen: console errors, requests to anywhere.
-export async function openPage(browser, file, { width = 1280, height = 800, colorScheme = "dark", hash = "", scale = 1, touch = false } = {}) {
+export async function openPage(browser, file, { width = 1040, height = 660, colorScheme = "dark", hash = "", scale = 1, touch = false } = {}) {
   const context = await browser.newContext({ viewport: { width, height }, colorScheme, deviceScaleFactor: scale, hasTouch: touch, acceptDownloads: true });
   const page = await context.newPage();
   const problems = [];
