@@ -6,7 +6,6 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -77,7 +76,7 @@ class EntryCache {
           (sizeof(Entry) + bytes.size() + alignof(Entry) - 1) / alignof(Entry) * alignof(Entry);
       if (used + needed > byte_limit || 2 * count > mask) return nullptr;
       auto* entry = new (room(needed)) Entry{key, static_cast<std::uint32_t>(bytes.size())};
-      std::memcpy(entry + 1, bytes.data(), bytes.size());
+      std::ranges::copy(bytes, reinterpret_cast<std::uint8_t*>(entry + 1));
       std::size_t slot = first_slot(key);
       while (slots[slot].load(std::memory_order_relaxed) != nullptr) slot = (slot + 1) & mask;
       slots[slot].store(entry, std::memory_order_release);
