@@ -20,6 +20,7 @@ struct Command {
 
 Command info_command(CLI::App& program);
 Command extract_command(CLI::App& program);
+Command interval_command(CLI::App& program);
 Command slice_command(CLI::App& program);
 Command track_command(CLI::App& program);
 Command measure_command(CLI::App& program);

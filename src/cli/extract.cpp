@@ -122,15 +122,14 @@ int run(const Extract& options) {
   const std::vector<double> isovalues = parse_isovalues(options.iso);
   (void)options.surface.extract_options(options.machine); // wrong ones are told before anything is read
   const auto reader = options.input.open(options.machine);
-  const int dimension = reader->info().dimension();
+  const Selection selection = options.input.selection(reader->info());
+  const int dimension = without_flat_axes(selected(reader->info(), selection)).dimension();
   check_dimension<lowest_dimension, highest_extracted>(dimension, "the field");
   if (options.output.wanted()) options.output.check(dimension, dimension - 1, options.output.path);
-  const Selection selection = options.input.selection(reader->info());
 
   const Stopwatch reading;
-  const Field field = read_selection(*reader, selection);
+  const Field field = without_flat_axes(read_selection(*reader, selection));
   const double read_seconds = reading.seconds();
-  check_axes(field.info);
 
   FileGroup files;
   std::vector<Outcome> outcomes;

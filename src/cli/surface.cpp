@@ -54,14 +54,18 @@ const char* content_noun(int k) {
 }
 
 Json json_of(const Measure& measure) {
-  return {{"components", measure.components},
-          {"euler_characteristic", measure.euler_characteristic},
-          {"boundary_facets", measure.boundary_facets},
-          {"bad_facets", measure.bad_facets},
-          {"closed", measure.closed},
-          {"content", measure.content},
-          {"vector_area", measure.vector_area},
-          {"zero_content_simplices", measure.zero_content_simplices}};
+  Json object{{"components", measure.components},
+              {"euler_characteristic", measure.euler_characteristic},
+              {"boundary_facets", measure.boundary_facets},
+              {"bad_facets", measure.bad_facets},
+              {"closed", measure.closed},
+              {"content", measure.content}};
+  if (measure.vector_area.empty())
+    object["inverted_simplices"] = measure.inverted_simplices; // a volume
+  else
+    object["vector_area"] = measure.vector_area;
+  object["zero_content_simplices"] = measure.zero_content_simplices;
+  return object;
 }
 
 void add_measure(Report& report, const Measure& measure, int simplex_dimension) {
@@ -72,7 +76,10 @@ void add_measure(Report& report, const Measure& measure, int simplex_dimension) 
                                                       simplex_noun(simplex_dimension - 1)));
   report.add("bad facets", grouped(measure.bad_facets));
   report.add(content_noun(simplex_dimension), fmt::format("{:.10g}", measure.content));
-  if (!measure.vector_area.empty())
+  if (measure.vector_area.empty())
+    report.add("inverted",
+               fmt::format("{} {}", grouped(measure.inverted_simplices), simplex_noun(simplex_dimension)));
+  else
     report.add("vector area", fmt::format("{:.6g}", fmt::join(measure.vector_area, ", ")));
   report.add("zero content",
              fmt::format("{} {}", grouped(measure.zero_content_simplices), simplex_noun(simplex_dimension)));
@@ -103,14 +110,6 @@ void add_self_intersections(Report& report, const SelfIntersections& found) {
   report.add("self-intersections", value);
 }
 
-void check_axes(const FieldInfo& info) {
-  for (std::size_t axis = 0; axis < info.axes.size(); ++axis)
-    if (info.axes[axis].count < 2) {
-      fail_usage(text("the field is ", size_and_type(info), ": axis ", name_of_axis(info.axes, axis),
-                      " has one sample, and a surface needs two or more along every axis"));
-    }
-}
-
 Affine at_coordinate(const Affine& map, int axis, double value) {
   const auto D = static_cast<std::size_t>(map.offset.size()), removed = static_cast<std::size_t>(axis);
   Affine rest;
@@ -121,6 +120,35 @@ Affine at_coordinate(const Affine& map, int axis, double value) {
       if (column != removed) rest.linear.push_back(map.linear[row * D + column]);
   }
   return rest;
+}
+
+FieldInfo without_flat_axes(FieldInfo info) {
+  for (int axis = info.dimension() - 1; axis >= 0; --axis) {
+    const Axis& flat = info.axes[static_cast<std::size_t>(axis)];
+    if (flat.count != 1) continue;
+    if (info.dimension() == 2) check_axes(info);
+    if (info.world) info.world = at_coordinate(*info.world, axis, flat.coordinate(0));
+    info.has_time &= axis != info.dimension() - 1;
+    info.axes.erase(info.axes.begin() + axis);
+  }
+  return info;
+}
+
+Field without_flat_axes(Field field) {
+  FieldInfo info = without_flat_axes(field.info);
+  std::size_t kept = 0;
+  for (std::size_t axis = 0; axis < field.strides.size(); ++axis)
+    if (field.info.axes[axis].count != 1) field.strides[kept++] = field.strides[axis];
+  field.strides.resize(kept);
+  field.info = std::move(info);
+  return field;
+}
+
+void check_axes(const FieldInfo& info) {
+  for (std::size_t axis = 0; axis < info.axes.size(); ++axis)
+    if (info.axes[axis].count < 2)
+      fail_usage(text("the field is ", size_and_type(info), ": axis ", name_of_axis(info.axes, axis),
+                      " has one sample, and a surface needs two or more along two axes at least"));
 }
 
 std::string with_suffix(const std::string& path, const std::string& suffix) {

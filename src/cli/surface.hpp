@@ -37,7 +37,12 @@ void add_self_intersections(Report& report, const SelfIntersections& found);
 
 void add_measure(Report& report, const Measure& measure, int simplex_dimension);
 
-// Fails if no surface can exist: an axis of one sample.
+// The field without its axes of one sample, as far as two are left: one step of a volume is a volume. Fails
+// if an axis of one sample remains: no surface can exist.
+FieldInfo without_flat_axes(FieldInfo info);
+Field without_flat_axes(Field field);
+
+// Fails if an axis has one sample.
 void check_axes(const FieldInfo& info);
 
 // The same map without `axis`, which stays at `value`.
