@@ -294,6 +294,54 @@ TEST(WriteField, the_same_field_gives_the_same_bytes) {
   EXPECT_EQ(content_of(folder / "a.nrrd"), content_of(folder / "b.nrrd"));
 }
 
+TEST(ReadField, options_that_do_not_fit_the_format) {
+  TemporaryFolder folder;
+  const Field field = space_time_field<float>();
+  for (const char* name : {"f.nrrd", "f.npy", "f.pvd", "f.raw"})
+    ASSERT_TRUE(write_field(field, folder / name));
+  ReadOptions raw, named;
+  raw.dims = dims_of(field.info);
+  raw.type = SampleType::f32;
+  named.variable = "density";
+  for (const char* name : {"f.nrrd", "f.npy", "f.pvd", "f_0000.vti"})
+    EXPECT_EQ(read_all(folder / name, raw).error().code, Code::invalid_argument) << name;
+  for (const char* name : {"f.nrrd", "f.npy", "f.pvd"})
+    EXPECT_EQ(read_all(folder / name, named).error().code, Code::invalid_argument) << name;
+  EXPECT_TRUE(read_all(folder / "f.raw", raw));
+  named.variable = field.info.name;
+  EXPECT_TRUE(read_all(folder / "f.pvd", named));
+}
+
+// No steps are a range too, after any other, whatever is kept from it.
+TEST(ReadField, empty_ranges) {
+  TemporaryFolder folder;
+  const Field field = space_time_field<float>();
+  WriteFieldOptions compressed;
+  compressed.compress = true;
+  ASSERT_TRUE(write_field(field, folder / "z.nrrd", compressed));
+  for (const char* name : {"f.nrrd", "f.pvd"}) ASSERT_TRUE(write_field(field, folder / name));
+  for (const char* name : {"z.nrrd", "f.nrrd", "f.pvd"}) {
+    const auto reader = open_field({folder / name});
+    ASSERT_TRUE(reader);
+    for (std::int64_t step = 0; step <= 5; ++step) {
+      const auto none = (*reader)->read(step, step);
+      ASSERT_TRUE(none) << none.error().message;
+      EXPECT_EQ(none->info.samples(), 0);
+      ASSERT_TRUE((*reader)->read(0, step));
+      EXPECT_TRUE((*reader)->read(std::max<std::int64_t>(step - 1, 0), std::max<std::int64_t>(step - 1, 0)));
+    }
+  }
+}
+
+TEST(ReadField, coordinates_beyond_all_numbers) {
+  TemporaryFolder folder;
+  write_content(folder / "f.nrrd", "NRRD0004\ntype: uchar\ndimension: 2\nsizes: 3 2\nencoding: raw\n"
+                                   "spacings: 1e308 1\n\n123456");
+  const auto read = read_all(folder / "f.nrrd");
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().code, Code::file_malformed);
+}
+
 // A file that ends early is an error wherever it ends, never a crash and never a shorter field.
 TEST(MalformedField, every_prefix_of_every_format) {
   TemporaryFolder folder;

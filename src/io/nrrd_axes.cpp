@@ -258,8 +258,10 @@ class AxesParser {
         const auto parts = split(*words);
         const auto origin = parts.size() == 2 ? number_from<double>(parts[0]) : std::nullopt;
         const auto first = parts.size() == 2 ? number_from<std::int64_t>(parts[1]) : std::nullopt;
-        if (!origin || !first)
-          return malformed(text("\"", nrrd_crop_key(axis.label), ":=\" is not two numbers"));
+        constexpr std::int64_t most = std::int64_t{1} << 53; // beyond it, numbers of samples are not exact
+        if (!origin || !first || *first < -most || *first > most)
+          return malformed(
+              text("\"", nrrd_crop_key(axis.label), ":=\" is not an origin and a sample number"));
         axis.cropped_from = CroppedFrom{*origin, *first};
       }
     }

@@ -43,14 +43,20 @@ const Format* format_of(const std::filesystem::path& path, const ReadOptions& op
   return options.dims.empty() ? nullptr : &raw;
 }
 
-// What describes raw samples is refused elsewhere: passing over it would look like doing what it says.
+// An option that a file has no use for is refused: passing over it would look like doing what it says.
 Status check_options(const Format& format, const std::filesystem::path& path, const ReadOptions& options) {
+  if (format.is_series) return {}; // its files have their own formats
   const bool describe_raw =
       !options.dims.empty() || options.type || options.skip_bytes != 0 || options.big_endian;
-  if (!describe_raw || format.open == open_raw || format.is_series) return {};
-  return Error{Code::invalid_argument, text(path.string(), ": a ", format.suffix,
-                                            " file says itself how its samples lie; dims, type, "
-                                            "skipped bytes and byte order are for raw files")};
+  if (describe_raw && format.open != open_raw)
+    return Error{Code::invalid_argument, text(path.string(), ": a ", format.suffix,
+                                              " file says itself how its samples lie; dims, type, "
+                                              "skipped bytes and byte order are for raw files")};
+  if (!options.variable.empty() && format.open != open_vti)
+    return Error{Code::invalid_argument,
+                 text(path.string(), ": the file holds one array without a name to choose it by, so ",
+                      in_quotes(options.variable), " cannot be asked for")};
+  return {};
 }
 
 } // namespace

@@ -81,29 +81,14 @@ Result<std::array<double, N>> numbers_of(const VtkXml& xml, pugi::xml_node node,
   return result;
 }
 
+// Nothing for integers of 64 bits.
 std::optional<SampleType> sample_type_of_array(VtkType type) {
-  switch (type) {
-  case VtkType::u8:
-    return SampleType::u8;
-  case VtkType::i8:
-    return SampleType::i8;
-  case VtkType::u16:
-    return SampleType::u16;
-  case VtkType::i16:
-    return SampleType::i16;
-  case VtkType::u32:
-    return SampleType::u32;
-  case VtkType::i32:
-    return SampleType::i32;
-  case VtkType::f32:
-    return SampleType::f32;
-  case VtkType::f64:
-    return SampleType::f64;
-  case VtkType::i64:
-  case VtkType::u64:
-    break;
-  }
-  return std::nullopt;
+  return visit_vtk_type(type, [](auto value) -> std::optional<SampleType> {
+    if constexpr (std::is_integral_v<decltype(value)> && sizeof value == 8)
+      return std::nullopt;
+    else
+      return sample_type_of<decltype(value)>();
+  });
 }
 
 // Why a field cannot be made of the array; empty if it can.

@@ -103,7 +103,7 @@ class StoredFieldReader final : public FieldReader {
     memory->field.strides = strides(end - begin);
 
     std::span<std::byte> out(memory->samples, bytes((end - begin) * inner_ * outer_));
-    const bool kept = outer_ == 1 && begin == kept_step_ && !kept_.empty();
+    const bool kept = outer_ == 1 && begin == kept_step_ && begin < end;
     if (kept) {
       std::copy(kept_.begin(), kept_.end(), out.begin());
       out = out.subspan(kept_.size());
@@ -216,6 +216,11 @@ Result<std::unique_ptr<FieldReader>> read_stored(StoredField stored, std::unique
     }
   }
   name_axes(stored.axes, last);
+  for (const Axis& axis : stored.axes)
+    if (!std::isfinite(axis.coordinate(0)) || !std::isfinite(axis.coordinate(axis.count - 1)))
+      return Error{Code::file_malformed,
+                   text(path.string(), ": axis ", axis.name, " runs from ", axis.coordinate(0), " to ",
+                        axis.coordinate(axis.count - 1), ", beyond all numbers")};
 
   const std::size_t dimension = stored.axes.size();
   const auto order = order_with_last(dimension, last ? static_cast<std::size_t>(*last) : dimension - 1);

@@ -3,6 +3,7 @@
 #include "core/text.hpp"
 #include "io/formats.hpp"
 #include "io/parse.hpp"
+#include "io/stored_field.hpp"
 
 #include <algorithm>
 #include <new>
@@ -35,6 +36,12 @@ Result<FieldFormat> format_of(const std::filesystem::path& path, const std::stri
 bool has_samples(const Field& field) {
   return field.samples && field.strides.size() == field.info.axes.size() && !field.strides.empty() &&
          std::ranges::all_of(field.info.axes, [](const Axis& axis) { return axis.count > 0; });
+}
+
+// Axes are written with the names that a reader would give them.
+FieldInfo with_names(FieldInfo info) {
+  name_axes(info.axes, info.has_time ? std::optional(info.dimension() - 1) : std::nullopt);
+  return info;
 }
 
 Result<FieldFormat> fitting_format(const FieldInfo& info, const std::filesystem::path& path,
@@ -76,11 +83,13 @@ Status write_as(FieldFormat format, const Field& field, const std::filesystem::p
 
 Status write_field(const Field& field, const std::filesystem::path& path, const WriteFieldOptions& options) {
   try {
-    const auto format = fitting_format(field.info, path, options);
+    Field named = field; // shares the samples
+    named.info = with_names(field.info);
+    const auto format = fitting_format(named.info, path, options);
     if (!format) return format.error();
     if (!has_samples(field))
       return Error{Code::invalid_argument, text(path.string(), ": there are no samples to write")};
-    return write_as(*format, field, path, options.compress);
+    return write_as(*format, named, path, options.compress);
   } catch (const std::bad_alloc&) {
     return Error{Code::out_of_memory, text("no memory to write ", path.string())};
   }
@@ -88,7 +97,7 @@ Status write_field(const Field& field, const std::filesystem::path& path, const 
 
 Status check_field_format(const FieldInfo& info, const std::filesystem::path& path,
                           const WriteFieldOptions& options) {
-  if (const auto format = fitting_format(info, path, options); !format) return format.error();
+  if (const auto format = fitting_format(with_names(info), path, options); !format) return format.error();
   return {};
 }
 

@@ -14,15 +14,9 @@
 namespace hyperiso {
 namespace {
 
-const char* nrrd_type(SampleType type) {
-  static constexpr const char* names[] = {"signed char", "unsigned char", "short", "unsigned short",
-                                          "int",         "unsigned int",  "float", "double"};
-  static constexpr SampleType types[] = {SampleType::i8,  SampleType::u8,  SampleType::i16, SampleType::u16,
-                                         SampleType::i32, SampleType::u32, SampleType::f32, SampleType::f64};
-  std::size_t i = 0;
-  while (types[i] != type) ++i;
-  return names[i];
-}
+// In the order of SampleType.
+constexpr const char* type_names[] = {"unsigned char", "signed char", "unsigned short", "short",
+                                      "unsigned int",  "int",         "float",          "double"};
 
 // A string that has to stay on its line.
 std::string on_one_line(std::string words) {
@@ -127,7 +121,7 @@ std::string header_of(const FieldInfo& info, bool compress) {
   const std::size_t D = axes.size();
   std::string header = "NRRD0004\n# Format: http://teem.sourceforge.net/nrrd/format.html\n";
   if (!info.name.empty()) header += text("content: ", on_one_line(info.name), "\n");
-  header += text("type: ", nrrd_type(info.type), "\ndimension: ", D, "\n");
+  header += text("type: ", type_names[static_cast<int>(info.type)], "\ndimension: ", D, "\n");
   header += line("sizes", D, [&](std::size_t axis) { return axes[axis].count; });
   header += info.world ? orientation(info) : positions(info, 0);
   // Readers take the last of four or more axes for time, unless it is said to be space.
