@@ -129,8 +129,8 @@ class StoredFieldReader final : public FieldReader {
   }
 
   std::vector<std::size_t> order_; // the file's axis for each of the field's
-  std::int64_t inner_ = 1, steps_ = 1,
-               outer_ = 1; // samples before, along and after the last axis, in the file
+  // Samples before, along and after the last axis, in the order of the file.
+  std::int64_t inner_ = 1, steps_ = 1, outer_ = 1;
   std::unique_ptr<ByteSource> source_;
   bool swap_bytes_;
   std::filesystem::path path_;
