@@ -132,6 +132,24 @@ struct TrackOptions {
 /// invalid_argument for fewer than two steps or a time axis that does not increase.
 Result<TrackingGraph> track(StepSource& source, double isovalue, const TrackOptions& options = {});
 
+/// The history of a few components, and what it took.
+struct LocalTracking {
+  TrackingGraph graph;
+  std::uint64_t samples = 0; ///< that were looked at; again where a slab was looked at again
+};
+
+/// Tracks only the components that pass the seed cells (a cell by the indices of its lowest corner, time
+/// last), and all that they come from and turn into: the families of these, as `track` finds them. Goes
+/// forward and backward in time from slab to slab, and only along the surface: cost follows the family, not
+/// the field, at about a microsecond for each simplex (paper 003 section 3.1). Features are not measured:
+/// `features`, `links` and `pieces` stay empty, and at merges and splits the older track goes on.
+///
+/// Errors: those of `track`; outside_domain for a cell that is not on the grid or that the surface does not
+/// pass.
+Result<LocalTracking> track_from_seeds(StepSource& source, double isovalue,
+                                       const std::vector<std::vector<std::int64_t>>& cells,
+                                       const TrackOptions& options = {});
+
 /// Marks tracks as simplified: those that never reach `minimum_volume`, and those that last less than
 /// `minimum_duration` and are a leaf (one end is a birth, a death, or on a wall) or a loop (they split from
 /// the track that they merge into). Tracks cut by the first or last step are not judged by their duration.

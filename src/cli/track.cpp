@@ -8,6 +8,7 @@
 #include "cli/surface.hpp"
 #include "core/memory.hpp"
 #include "core/text.hpp"
+#include "hyperiso/slice.hpp"
 #include "hyperiso/track_files.hpp"
 
 #include <algorithm>
@@ -20,6 +21,7 @@ namespace {
 
 struct Track {
   FieldOptions input;
+  std::vector<std::string> seeds;
   std::string iso, overlap, minimum_volume, minimum_duration, directory;
   SurfaceOptions surface;
   PrintOptions printing;
@@ -73,6 +75,26 @@ double not_negative(const char* option, const std::string& value) {
   return number;
 }
 
+// The cell that a point lies in, by the indices of its lowest corner.
+std::vector<std::int64_t> cell_at(const std::string& point, const std::vector<Axis>& axes) {
+  const std::vector<double> coordinates = parse_numbers("--seed", point);
+  if (coordinates.size() != axes.size())
+    fail_usage(text("--seed: ", coordinates.size(), " coordinates; the field has ", axes.size(), " axes"));
+  std::vector<std::int64_t> cell;
+  for (std::size_t axis = 0; axis < axes.size(); ++axis)
+    cell.push_back(std::min(take(samples_around(axes[axis], coordinates[axis])).begin, axes[axis].count - 2));
+  return cell;
+}
+
+TrackingGraph make_graph(const Track& options, StepSource& steps, double isovalue, TrackOptions tracking) {
+  ProgressBar bar("track", options.printing.quiet);
+  tracking.extraction.progress = bar.callback();
+  if (options.seeds.empty()) return take(track(steps, isovalue, tracking));
+  std::vector<std::vector<std::int64_t>> cells;
+  for (const std::string& seed : options.seeds) cells.push_back(cell_at(seed, steps.info().axes));
+  return take(track_from_seeds(steps, isovalue, cells, tracking)).graph;
+}
+
 // One surface per step, named by its tracks, and a series of them.
 void write_surfaces(const Track& options, const TrackingGraph& graph, SelectedSteps& steps,
                     FileGroup& files) {
@@ -95,7 +117,7 @@ void write_surfaces(const Track& options, const TrackingGraph& graph, SelectedSt
 void write_outputs(const Track& options, const TrackingGraph& graph, SelectedSteps& steps) {
   FileGroup files;
   take(write_tracking(graph, options.directory, &files));
-  write_surfaces(options, graph, steps, files);
+  if (options.seeds.empty()) write_surfaces(options, graph, steps, files);
   take(files.commit());
 }
 
@@ -128,18 +150,14 @@ int run(const Track& options) {
   if (options.iso.empty()) fail_usage("--iso is required");
   const std::vector<double> isovalues = parse_isovalues(options.iso);
   if (isovalues.size() > 1) fail_usage("--iso: one isovalue is tracked at a time");
-  TrackOptions tracking = track_options(options);
+  const TrackOptions tracking = track_options(options);
   const double minimum_volume = not_negative("--min-volume", options.minimum_volume);
   const double minimum_duration = not_negative("--min-duration", options.minimum_duration);
 
   const auto reader = options.input.open(options.machine);
   SelectedSteps steps(*reader, options.input.selection(reader->info()));
   const Stopwatch watch;
-  TrackingGraph graph = [&] {
-    ProgressBar bar("track", options.printing.quiet);
-    tracking.extraction.progress = bar.callback();
-    return take(track(steps, isovalues[0], tracking));
-  }();
+  TrackingGraph graph = make_graph(options, steps, isovalues[0], tracking);
   const double track_seconds = watch.seconds();
   simplify(graph, minimum_volume, minimum_duration);
   if (graph.tracks.empty() && !options.printing.quiet)
@@ -166,6 +184,11 @@ Command track_command(CLI::App& program) {
   options->input.add_to(*app);
   app->add_option("--iso", options->iso, "the isovalue")->type_name("V")->group("Surface");
   options->surface.add_to(*app);
+  app->add_option(
+         "--seed", options->seeds,
+         "follow only the component through the grid cell around this point, and its relatives; repeatable")
+      ->type_name("X,Y,...,T")
+      ->group("Tracks");
   app->add_option(
          "--overlap", options->overlap,
          "cut tracks where a component and what it is one step later overlap by no more than this share "

@@ -123,17 +123,13 @@ class SlabSamples {
   double isovalue_;
 };
 
+// Takes over a surface between two steps. Requires its edges.
 template <class T, int D>
-Result<Slab<D>> make_slab(const SlabSamples<T, D>& samples, double isovalue, bool has_missing,
-                          ExtractOptions options) {
-  options.keep_edges = true;
-  options.precision = Precision::f32;
-  auto mesh = extract(samples.field(), isovalue, options);
-  if (!mesh) return mesh.error();
-  if (mesh->vertex_count() > UINT32_MAX || mesh->simplices.size() > UINT32_MAX)
+Result<Slab<D>> make_slab(const SlabSamples<T, D>& samples, SimplexMesh<D>&& mesh, bool has_missing) {
+  if (mesh.vertex_count() > UINT32_MAX || mesh.simplices.size() > UINT32_MAX)
     return Error{Code::out_of_memory, "the surface between two steps has more than 2^32 corners"};
   Slab<D> slab;
-  slab.edges = std::move(mesh->edges);
+  slab.edges = std::move(mesh.edges);
   slab.row_length = samples.row_length();
   slab.step_offset = samples.step_offset();
   slab.times.resize(slab.edges.size());
@@ -147,9 +143,9 @@ Result<Slab<D>> make_slab(const SlabSamples<T, D>& samples, double isovalue, boo
       slab.ties_above |= slab.times[vertex] == 1;
     }
   }
-  slab.corners.resize(mesh->simplices.size());
+  slab.corners.resize(mesh.simplices.size());
   for (std::size_t corner = 0; corner < slab.corners.size(); ++corner)
-    slab.corners[corner] = static_cast<Vertex>(mesh->simplices[corner]);
+    slab.corners[corner] = static_cast<Vertex>(mesh.simplices[corner]);
   slab.stars.build(slab.corners, D, slab.edges.size());
   slab.has_missing = has_missing;
   slab.place = [samples](GridEdge edge) { return samples.place(edge); };

@@ -28,7 +28,7 @@
 
 #include "hyperiso/track.hpp"
 
-#include "core/text.hpp"
+#include "track/check_source.hpp"
 #include "track/level.hpp"
 #include "track/links.hpp"
 #include "track/step_features.hpp"
@@ -58,8 +58,10 @@ class TrackingRun {
     std::unique_ptr<Sweep<D>> lower;
     for (std::int64_t step = 0; step + 1 < graph_.steps; ++step) {
       if (const Status read = window_.read(step + 1); !read) return read.error();
-      auto slab = make_slab<T, D>(SlabSamples<T, D>(window_.slab(step), isovalue_), isovalue_,
-                                  window_.has_missing(), slab_options());
+      const SlabSamples<T, D> samples(window_.slab(step), isovalue_);
+      auto mesh = extract(samples.field(), isovalue_, slab_options());
+      if (!mesh) return mesh.error();
+      auto slab = make_slab(samples, std::move(*mesh), window_.has_missing());
       if (!slab) return slab.error();
       auto upper = std::make_unique<Sweep<D>>(std::move(*slab), time(step), time(step + 1));
       if (const Status passed = pass_step(step, lower.get(), upper.get()); !passed) return passed.error();
@@ -81,6 +83,8 @@ class TrackingRun {
 
   ExtractOptions slab_options() const {
     ExtractOptions options = options_.extraction;
+    options.keep_edges = true;
+    options.precision = Precision::f32; // of positions that nobody reads
     options.progress = {};
     return options;
   }
@@ -169,19 +173,7 @@ const char* name_of(EventType type) {
 
 Result<TrackingGraph> track(StepSource& source, double isovalue, const TrackOptions& options) {
   const FieldInfo& info = source.info();
-  if (info.dimension() != 3 && info.dimension() != 4)
-    return Error{Code::unsupported_dimension,
-                 text("tracking needs a field of 3 or 4 axes, the last of them time; this one has ",
-                      info.dimension())};
-  const Axis& steps = info.axes.back();
-  if (steps.count < 2)
-    return Error{Code::invalid_argument,
-                 text("tracking needs at least 2 steps; the field has ", steps.count)};
-  if (!steps.increasing())
-    return Error{Code::invalid_argument, "tracking needs times that increase from step to step"};
-  if (options.extraction.method == Method::barycentric)
-    return Error{Code::invalid_argument,
-                 "tracking works with the methods hull, component and simplicial, not with barycentric"};
+  if (const Status valid = check_source(info, options.extraction.method); !valid) return valid.error();
   try {
     return visit_sample_type(info.type, [&]<class T>(T) -> Result<TrackingGraph> {
       if (info.dimension() == 3) return TrackingRun<T, 3>(source, isovalue, options).run();
