@@ -20,7 +20,7 @@ from pathlib import Path
 PROGRAM = Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else Path("build/release/bin/hyperiso").resolve()
 ROOT = Path(__file__).resolve().parent.parent
 WATER = "examples/data/alpha_water_24x24x24x41.nrrd"
-VERBS = ["info", "extract", "slice", "measure", "table", "sample", "convert"]
+VERBS = ["info", "extract", "interval", "slice", "track", "measure", "table", "sample", "convert"]
 
 HAS_VIEW = b"\n  view " in subprocess.run([PROGRAM, "--help"], capture_output=True, check=True).stdout
 if HAS_VIEW:
@@ -251,9 +251,39 @@ class WrongUsage(Case):
         self.assert_refused(2, "slice", "two.nrrd", "--iso", "0.5", "--time", "0", words=["2", "3 to 4"])
 
     def test_axis_of_one_sample_is_named(self):
-        self.sample("ball", "5,5,1", "flat.nrrd")
-        self.assert_refused(2, "extract", "flat.nrrd", "--iso", "0.5", words=["axis z", "5 x 5 x 1"])
-        self.assert_refused(2, "extract", self.sample(), "--iso", "0.5", "--crop", ",3:4", words=["axis y"])
+        self.sample("ball", "5,1,1", "thin.nrrd")
+        self.assert_refused(2, "extract", "thin.nrrd", "--iso", "0.5", words=["axis y", "5 x 1"])
+        self.assert_refused(2, "slice", self.sample(), "--iso", "0.5", "--time", "0", "--crop", ",3:4",
+                            words=["axis y"])
+
+
+class FlatAxes(Case):
+    def test_one_step_of_a_volume_is_a_volume(self):
+        self.sample("ball", "9,9,9,5", "moving.nrrd")
+        step = self.ok("extract", "moving.nrrd", "--iso", "0.5", "--steps", "2:3", "--json").json()
+        self.assertEqual(step["dims"], [9, 9, 9])
+        self.assertGreater(step["simplices"], 0)
+
+
+class Interval(Case):
+    def interval(self, *arguments):
+        return self.ok("interval", *arguments, "--json", "--measure").json()
+
+    def test_volumes_of_adjoining_ranges_add_up(self):
+        self.sample("ball", "24,24,24", "ball.nrrd")
+        whole = self.interval("ball.nrrd", "--range", "0.3:0.7", "--method", "simplicial", "-o", "shell.vtu")
+        self.assertEqual(whole["range"], [0.3, 0.7])
+        self.assertEqual(whole["measure"]["bad_facets"], 0)
+        self.assertEqual(whole["measure"]["inverted_simplices"], 0)
+        parts = self.interval("ball.nrrd", "--range", "0.3,0.5,0.7", "--method", "simplicial")
+        self.assertAlmostEqual(parts["measure"]["content"], whole["measure"]["content"], 6)
+        self.assertEqual(len(self.interval("ball.nrrd", "--range", "0.3:0.7:5")["levels"]), 5)
+        self.assertIn("shell.vtu", self.files())
+
+    def test_ranges_that_mean_nothing(self):
+        field = self.sample()
+        for bad in ["0.7:0.3", "0.5", "0.5:0.5", "0:1:1", "0:1:x", "a:b", "nan:1", "1:2:3:4"]:
+            self.assert_refused(2, "interval", field, "--range", bad)
 
 
 class UnusableInput(Case):

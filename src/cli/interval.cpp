@@ -187,7 +187,7 @@ Command interval_command(CLI::App& program) {
         "and "
         "the sum must be exact, use --method simplicial, which never folds and takes about five times as "
         "many."},
-       {{"where the water of a dam break is between a tenth and nine tenths, at one step",
+       {{"where there is a tenth to nine tenths of water, at one step of a dam break",
          "hyperiso interval examples/data/alpha_water_24x24x24x41.nrrd --steps 20:21 --range 0.1:0.9 "
          "--measure -o "
          "spray.vtu"}}});

@@ -230,7 +230,8 @@ Command track_command(CLI::App& program) {
          "hyperiso track examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 -o water"},
         {"the same, without drops", "hyperiso track examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 "
                                     "--min-volume 0.001 --min-duration 0.1 -o water"},
-        {"events for a script", "hyperiso track wave.nrrd --iso 0.2 --json | jq .events"}}});
+        {"tracks and events for a script",
+         "hyperiso track examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 --json > water.json"}}});
   return {app, [options] { return run(*options); }};
 }
 
