@@ -4,7 +4,7 @@
     draw_series.py SERIES.pvd PICTURE.png TIME...
 
 Draws the surfaces of the series that are nearest to the given times, in the box that holds them all, z up. Exits
-with 3 where VTK's Python modules are missing, or there is no screen to draw on and no xvfb-run to make one.
+with 3 where VTK's Python modules are missing, or there is no screen to draw on and no Xvfb to make one.
 """
 
 import os
@@ -186,19 +186,29 @@ def draw(entries, picture):
 
 
 def draw_on_a_screen_made_for_it():
-    """Runs this program again under xvfb-run; VTK as Debian builds it ends the process where there is no screen.
+    """Runs this program again with a screen of its own; VTK as Debian builds it ends the process where there is none.
 
-    Now and then the screen is not there yet, or another program takes it, and the process is aborted (134).
+    Xvfb itself takes the first free number and says which, once it is there: nobody else can take it in between. It
+    must not start anew (-noreset) when one window is closed and the next not yet open: it refuses windows meanwhile.
     """
-    if not shutil.which("xvfb-run"):
-        print("draw_series: no picture: there is no screen, and no xvfb-run to make one", file=sys.stderr)
+    if not shutil.which("Xvfb"):
+        print("draw_series: no picture: there is no screen, and no Xvfb to make one", file=sys.stderr)
         return 3
-    for _ in range(3):
-        run = subprocess.run(["xvfb-run", "-a", sys.executable, *sys.argv], stderr=subprocess.PIPE, check=False)
-        if run.returncode < 128:
-            break
-    sys.stderr.buffer.write(run.stderr)
-    return run.returncode if run.returncode < 128 else 3
+    told, number = os.pipe()
+    server = subprocess.Popen(["Xvfb", "-displayfd", str(number), "-noreset", "-nolisten", "tcp",
+                               "-screen", "0", "640x480x24"], pass_fds=[number], stderr=subprocess.DEVNULL)
+    os.close(number)
+    try:
+        with os.fdopen(told) as line:
+            display = line.readline().strip()
+        if not display:
+            print("draw_series: no picture: Xvfb did not start", file=sys.stderr)
+            return 3
+        run = subprocess.run([sys.executable, *sys.argv], env={**os.environ, "DISPLAY": f":{display}"}, check=False)
+        return abs(run.returncode)
+    finally:
+        server.terminate()
+        server.wait()
 
 
 def main():
