@@ -257,6 +257,17 @@ class WrongUsage(Case):
                             words=["axis y"])
 
 
+class SliceOfAMesh(Case):
+    def test_times_are_not_negative_and_a_cut_beside_the_data_is_refused(self):
+        self.sample("ball", "9,9,9,5", "moving.nrrd")
+        self.ok("extract", "moving.nrrd", "--iso", "0.5", "-o", "moving.vtu")
+        cut = self.ok("slice", "moving.vtu", "--time", "0.5", "--json").json()
+        for part in cut["seconds"].values():
+            self.assertGreaterEqual(part, 0)
+        for source in (["moving.vtu"], ["moving.nrrd", "--iso", "0.5"]):
+            self.assert_refused(2, "slice", *source, "--time", "99", "-o", "x.vtp", words=["99", "axis t"])
+
+
 class FlatAxes(Case):
     def test_one_step_of_a_volume_is_a_volume(self):
         self.sample("ball", "9,9,9,5", "moving.nrrd")

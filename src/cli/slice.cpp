@@ -293,17 +293,24 @@ std::vector<Outcome> slice_mesh(const Slice& options, Plan& plan) {
   const Precision precision = options.surface.extract_options(options.machine).precision;
   const Stopwatch reading;
   Mesh mesh = take(read_mesh(options.input.paths[0]));
-  double read_seconds = reading.seconds();
+  const double read_seconds = reading.seconds();
   plan.axes = axes_of(mesh);
   plan.cuts = parse_cuts(options, plan.axes);
-  return with_simplex_mesh<lowest_sliced>(std::move(mesh), [&]<int D, int K>(const SimplexMesh<D, K>& whole) {
-    plan.simplex_dimension = K - 1;
-    check_output(options, plan);
-    return make_cuts(options, plan, [&](double, double value, Outcome& outcome) -> Mesh {
-      outcome.read_seconds = std::exchange(read_seconds, 0.0);
-      return take(hyperiso::slice(whole, Hyperplane<D>::at(plan.cuts.axis, value), SliceOptions{precision}));
-    });
-  });
+  const Axis& across = plan.axes[static_cast<std::size_t>(plan.cuts.axis)];
+  for (const double value : plan.cuts.values)
+    if (across.count > 0)
+      (void)take(samples_around(across, value)); // the mesh knows its grid: refuse what misses it
+  std::vector<Outcome> outcomes =
+      with_simplex_mesh<lowest_sliced>(std::move(mesh), [&]<int D, int K>(const SimplexMesh<D, K>& whole) {
+        plan.simplex_dimension = K - 1;
+        check_output(options, plan);
+        return make_cuts(options, plan, [&](double, double value, Outcome&) -> Mesh {
+          return take(
+              hyperiso::slice(whole, Hyperplane<D>::at(plan.cuts.axis, value), SliceOptions{precision}));
+        });
+      });
+  outcomes.front().read_seconds = read_seconds;
+  return outcomes;
 }
 
 int run(const Slice& options) {
