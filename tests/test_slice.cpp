@@ -192,6 +192,32 @@ TEST(Slice, does_not_depend_on_the_order_of_simplices) {
 }
 
 // Normals stay outward and lengths stay true on oblique planes, whichever way the normal points.
+// A turned space and a time in other units: the steps must still be found, where they are now.
+TEST(Slice, at_a_stored_step_of_a_transformed_mesh) {
+  const auto field = random_island(5, 3);
+  const Affine map{{0.8, -0.6, 0, 0, 0.6, 0.8, 0, 0, 0, 0, -2, 0, 0, 0, 0, 0.3}, {1, 2, 3, 0.1}};
+  const Affine map_of_space{{0.8, -0.6, 0, 0.6, 0.8, 0, 0, 0, -2}, {1, 2, 3}};
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    auto surface = extracted(field, 0, {.precision = precision});
+    transform(surface, map);
+    for (std::int64_t step = 0; step < 4; ++step) {
+      auto expected = *extract(field.view.at_index(3, step), 0, {.precision = precision});
+      transform(expected, map_of_space);
+      const auto cut =
+          sliced(surface, Hyperplane<4>::at(3, surface.grid_axes[3].coordinate(step)), {precision});
+      EXPECT_NEAR(surface.grid_axes[3].coordinate(step), 0.1 + 0.3 * static_cast<double>(step), 1e-6);
+      EXPECT_EQ(simplex_set(cut), simplex_set(expected)) << step;
+      EXPECT_EQ(cut.edges, expected.edges);
+    }
+    // Planes across axes that are no longer axes of the grid are planes like any other.
+    for (const double x : {0.0, 1.0, 2.0, 0.25}) {
+      const auto cut = sliced(surface, Hyperplane<4>::at(0, x), {precision});
+      EXPECT_GT(cut.simplex_count(), 0u);
+      EXPECT_EQ(measure(cut)->bad_facets, 0u);
+    }
+  }
+}
+
 TEST(Slice, oblique_planes_of_a_ball_are_balls_of_their_own) {
   const auto field = make_field<double, 4>(box_grid<4>(21, -1.5, 1.5), [](const auto& p) {
     return 1.2 - std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);

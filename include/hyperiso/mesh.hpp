@@ -36,7 +36,8 @@ struct Mesh {
 
   /// Where each vertex came from: vertices numbers of grid edges, ascending, or empty (see GridEdge).
   /// `grid_axes` are the axes of that grid; `coordinate` of a vertex along an axis that its edge does not
-  /// run along is that of the edge's samples, to the bit (rounded to f32 if positions are).
+  /// run along is that of the edge's samples, to the bit (rounded to f32 if positions are). An axis whose
+  /// origin is NaN has no coordinates any more: `transform` has mixed it with others.
   Array<GridEdge> edges;
   std::vector<Axis> grid_axes;
 
@@ -63,7 +64,7 @@ template <int D>
 using VolumeMesh = SimplexMesh<D, D>;
 
 /// Moves the vertices by an affine map and turns the simplices where the map reflects, so that normals still
-/// point from + to -. Requires that `map` has the mesh's dimension.
+/// point from + to -. `grid_axes` move along. Requires that `map` has the mesh's dimension.
 void transform(Mesh& mesh, const Affine& map);
 
 } // namespace hyperiso

@@ -20,7 +20,8 @@ namespace {
 bool is_valid(const Axis& axis) {
   const auto& c = axis.coordinates;
   if (axis.count < 1) return false;
-  if (c.empty()) return std::isfinite(axis.origin) && std::isfinite(axis.spacing) && axis.spacing != 0;
+  // An origin that is NaN stands for an axis that a transform has mixed with others.
+  if (c.empty()) return !std::isinf(axis.origin) && std::isfinite(axis.spacing) && axis.spacing != 0;
   const bool finite = std::all_of(c.begin(), c.end(), [](double x) { return std::isfinite(x); });
   const bool rising = std::adjacent_find(c.begin(), c.end(), std::greater_equal()) == c.end();
   const bool falling = std::adjacent_find(c.begin(), c.end(), std::less_equal()) == c.end();
