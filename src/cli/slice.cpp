@@ -8,6 +8,7 @@
 #include "cli/surface.hpp"
 #include "core/memory.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <functional>
@@ -298,7 +299,7 @@ std::vector<Outcome> slice_mesh(const Slice& options, Plan& plan) {
   plan.cuts = parse_cuts(options, plan.axes);
   const Axis& across = plan.axes[static_cast<std::size_t>(plan.cuts.axis)];
   for (const double value : plan.cuts.values)
-    if (across.count > 0)
+    if (across.count > 0 && std::isfinite(across.coordinate(0)))
       (void)take(samples_around(across, value)); // the mesh knows its grid: refuse what misses it
   std::vector<Outcome> outcomes =
       with_simplex_mesh<lowest_sliced>(std::move(mesh), [&]<int D, int K>(const SimplexMesh<D, K>& whole) {

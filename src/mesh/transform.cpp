@@ -2,6 +2,7 @@
 
 #include "core/determinant.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace hyperiso {
@@ -33,7 +34,7 @@ void move_axis(Axis& axis, double scale, double offset, bool f64) {
 
 void move_grid(Mesh& mesh, const Affine& map) {
   const auto D = static_cast<std::size_t>(mesh.dimension);
-  for (std::size_t axis = 0; axis < mesh.grid_axes.size(); ++axis) {
+  for (std::size_t axis = 0; axis < std::min(D, mesh.grid_axes.size()); ++axis) { // not that of levels
     if (stands_alone(map, axis)) {
       move_axis(mesh.grid_axes[axis], map.linear[axis * D + axis], map.offset[axis], mesh.positions.wide());
     } else {
