@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <fmt/format.h>
+#include <system_error>
 #include <unistd.h>
 
 namespace hyperiso::cli {
@@ -78,25 +80,51 @@ std::string Report::text() const {
   return lines;
 }
 
-ProgressBar::ProgressBar(std::string label, bool quiet)
-    : label_(std::move(label)), active_(!quiet && ::isatty(STDERR_FILENO)) {
-  if (active_) show(0);
+ProgressBar::ProgressBar(std::string label, bool quiet) : label_(std::move(label)) {
+  if (quiet || !::isatty(STDERR_FILENO)) return;
+  // Signals are for the thread that works: their handler must not run beside it.
+  sigset_t all, before;
+  ::sigfillset(&all);
+  ::pthread_sigmask(SIG_SETMASK, &all, &before);
+  try {
+    drawing_ = std::thread([this] { keep_drawing(); });
+  } catch (const std::system_error&) { // no thread to be had: the work goes on without a bar
+  }
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
-ProgressBar::~ProgressBar() { wipe_progress_bar(); }
+ProgressBar::~ProgressBar() {
+  if (!drawing_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    has_ended_ = true;
+  }
+  ended_.notify_one();
+  drawing_.join();
+  wipe_progress_bar();
+}
 
-void ProgressBar::show(double share) {
-  if (!active_) return;
-  constexpr double delay = 0.3, interval = 0.1;
-  const double now = since_start_.seconds();
-  if (now < delay || now < shown_at_ + interval) return;
-  shown_at_ = now;
-  constexpr int width = 40;
-  const int filled = static_cast<int>(std::clamp(share, 0.0, 1.0) * width);
+void ProgressBar::keep_drawing() {
+  constexpr std::chrono::milliseconds delay{300}, interval{100};
+  std::unique_lock lock(mutex_);
+  const auto has_ended = [this] { return has_ended_; };
+  if (ended_.wait_for(lock, delay, has_ended)) return;
+  do draw();
+  while (!ended_.wait_for(lock, interval, has_ended));
+}
+
+void ProgressBar::draw() const {
+  const double share = share_;
+  std::string line = fmt::format("{}{} ", wipe_line, label_);
+  if (share < 0) {
+    line += fmt::format("{:.1f} s", since_start_.seconds());
+  } else {
+    constexpr std::size_t width = 40;
+    const auto filled = static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * width);
+    line += fmt::format("[{:<{}}] {:3.0f} %", std::string(filled, '#'), width, share * 100);
+  }
   bar_is_shown = true;
-  write_all(STDERR_FILENO,
-            fmt::format("{}{} [{:<{}}] {:3.0f} %", wipe_line, label_,
-                        std::string(static_cast<std::size_t>(filled), '#'), width, share * 100));
+  write_all(STDERR_FILENO, line);
 }
 
 void wipe_progress_bar() noexcept {

@@ -3,10 +3,14 @@
 
 #include "hyperiso/progress.hpp"
 
+#include <atomic>
 #include <chrono>
+#include <condition_variable>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -51,8 +55,9 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-// A line on standard error that says what is being done and how far it is, if standard error is a terminal;
-// it appears after a moment, so that quick work shows nothing, and is wiped away at the end.
+// A line on standard error that says what is being done and how far it is or, where that is not known, for
+// how long; only if standard error is a terminal. It appears after a moment, so that quick work shows
+// nothing, and is wiped away at the end.
 class ProgressBar {
  public:
   ProgressBar(std::string label, bool quiet);
@@ -60,16 +65,22 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  void show(double share);
+  void show(double share) { share_ = share; }
   Progress callback() {
     return [this](double share) { return show(share), true; };
   }
 
  private:
+  void draw() const;
+  void keep_drawing();
+
   std::string label_;
-  bool active_;
+  std::atomic<double> share_{-1}; // not known
   Stopwatch since_start_;
-  double shown_at_ = 0; // seconds; 0: not yet
+  std::mutex mutex_;
+  std::condition_variable ended_;
+  bool has_ended_ = false;
+  std::thread drawing_; // a thread of its own, as reading and writing have nothing to tell
 };
 
 // Wipes a progress bar from within a signal handler.

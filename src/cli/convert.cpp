@@ -41,7 +41,7 @@ int run(const ConvertVerb& options) {
   result.type = request.type;
   options.output.check(result);
   const Stopwatch reading;
-  Field field = read_selection(*reader, selection);
+  Field field = read_selection(*reader, selection, options.printing.quiet);
   const double read_seconds = reading.seconds();
 
   if (request.rescale || request.type != field.info.type) {
@@ -54,7 +54,7 @@ int run(const ConvertVerb& options) {
       print_warning(text(converted.clamped, " samples lay outside the range of ", name_of(request.type),
                          " and were clamped"));
   }
-  const double write_seconds = options.output.write(field);
+  const double write_seconds = options.output.write(field, options.printing.quiet);
   if (options.printing.json) {
     print_json(Json{{"dims", dims_of(field.info)},
                     {"type", name_of(field.info.type)},

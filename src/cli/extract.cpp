@@ -56,12 +56,13 @@ Outcome make_surface(const Extract& options, const Field& field, double isovalue
   outcome.simplices = mesh.simplex_count();
   outcome.active_cells = mesh.active_cells;
   if (mesh.simplex_count() == 0 && !options.printing.quiet) print_warning(why_empty(field, isovalue));
-  if (options.measure) outcome.measure = take(measure(mesh));
+  if (options.measure) outcome.measure = measure_of(mesh, options.printing.quiet);
   if (options.self_intersections)
     outcome.self_intersections = self_intersections_of(mesh, options.printing.quiet);
 
   if (path.empty()) return outcome;
   const Stopwatch writing;
+  const ProgressBar bar("write", options.printing.quiet);
   take(write_mesh(mesh, path, options.output.write_options(field.info.axes, files)));
   outcome.write_seconds = writing.seconds();
   return outcome;
@@ -128,7 +129,7 @@ int run(const Extract& options) {
   if (options.output.wanted()) options.output.check(dimension, dimension - 1, options.output.path);
 
   const Stopwatch reading;
-  const Field field = without_flat_axes(read_selection(*reader, selection));
+  const Field field = without_flat_axes(read_selection(*reader, selection, options.printing.quiet));
   const double read_seconds = reading.seconds();
 
   FileGroup files;

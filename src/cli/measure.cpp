@@ -21,8 +21,8 @@ struct MeasureVerb {
 };
 
 int run(const MeasureVerb& options) {
-  const Mesh mesh = take(read_mesh(options.path));
-  const Measure measured = take(measure(mesh));
+  const Mesh mesh = mesh_in(options.path, options.printing.quiet);
+  const Measure measured = measure_of(mesh, options.printing.quiet);
   std::optional<SelfIntersections> intersections;
   if (options.self_intersections) intersections = self_intersections_of(mesh, options.printing.quiet);
   if (options.printing.json) {

@@ -133,7 +133,8 @@ FieldInfo selected(const FieldInfo& info, const Selection& selection) {
   return result;
 }
 
-Field read_selection(FieldReader& reader, const Selection& selection) {
+Field read_selection(FieldReader& reader, const Selection& selection, bool quiet) {
+  const ProgressBar bar("read", quiet);
   Field field = take(reader.read(selection.ranges.back().first, selection.ranges.back().second));
   for (std::size_t axis = 0; axis + 1 < selection.ranges.size(); ++axis)
     field =
@@ -230,7 +231,8 @@ void FieldOutputOptions::check(const FieldInfo& info) const {
   take(check_field_format(info, path, write_options()));
 }
 
-double FieldOutputOptions::write(const Field& field) const {
+double FieldOutputOptions::write(const Field& field, bool quiet) const {
+  const ProgressBar bar("write", quiet);
   const Stopwatch stopwatch;
   take(write_field(field, path, write_options()));
   return stopwatch.seconds();

@@ -55,8 +55,9 @@ struct FieldOptions {
 // The description of what was selected.
 FieldInfo selected(const FieldInfo& info, const Selection& selection);
 
-// Reads the selected samples: along the last axis only these, of the others all, cropped then.
-Field read_selection(FieldReader& reader, const Selection& selection);
+// Reads the selected samples: along the last axis only these, of the others all, cropped then. Shows that it
+// does, unless `quiet`.
+Field read_selection(FieldReader& reader, const Selection& selection, bool quiet = true);
 
 // --iso
 std::vector<double> parse_isovalues(const std::string& iso);
@@ -92,7 +93,7 @@ struct FieldOutputOptions {
   // Fails if there is no path or no format there for such a field.
   void check(const FieldInfo& info) const;
   // Gives the seconds it took.
-  double write(const Field& field) const;
+  double write(const Field& field, bool quiet) const;
 
  private:
   WriteFieldOptions write_options() const;

@@ -64,7 +64,7 @@ int run(const Sample& options) {
     field = take(make_sample(options.name, request));
   }
   const double compute_seconds = computing.seconds();
-  const double write_seconds = options.output.write(*field);
+  const double write_seconds = options.output.write(*field, options.printing.quiet);
   const double isovalue = sample_isovalue(options.name, request);
   if (options.printing.json) {
     print_json(Json{{"name", options.name},

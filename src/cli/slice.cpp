@@ -293,7 +293,7 @@ std::vector<Outcome> slice_mesh(const Slice& options, Plan& plan) {
   if (!options.iso.empty()) fail_usage("--iso: the input is a mesh; its isovalue is chosen already");
   const Precision precision = options.surface.extract_options(options.machine).precision;
   const Stopwatch reading;
-  Mesh mesh = take(read_mesh(options.input.paths[0]));
+  Mesh mesh = mesh_in(options.input.paths[0], options.printing.quiet);
   const double read_seconds = reading.seconds();
   plan.axes = axes_of(mesh);
   plan.cuts = parse_cuts(options, plan.axes);

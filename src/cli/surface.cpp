@@ -36,6 +36,16 @@ std::vector<Axis> axes_of(const Mesh& mesh) {
   return axes;
 }
 
+Mesh mesh_in(const std::string& path, bool quiet) {
+  const ProgressBar bar("read", quiet);
+  return take(read_mesh(path));
+}
+
+Measure measure_of(const Mesh& mesh, bool quiet) {
+  const ProgressBar bar("measure", quiet);
+  return take(measure(mesh));
+}
+
 bool is_mesh_file(const std::string& path) {
   const std::string suffix = std::filesystem::path(path).extension().string();
   for (const char* known : {".vtu", ".vtp", ".ply", ".stl", ".obj", ".off"})

@@ -20,6 +20,9 @@ std::string name_of_axis(const std::vector<Axis>& axes, std::size_t axis);
 // The axes of the space of a mesh: those of its grid, else x, y, z, t without samples.
 std::vector<Axis> axes_of(const Mesh& mesh);
 
+Mesh mesh_in(const std::string& path, bool quiet);
+Measure measure_of(const Mesh& mesh, bool quiet);
+
 // Whether a file holds a mesh, by its suffix.
 bool is_mesh_file(const std::string& path);
 

@@ -177,7 +177,10 @@ template <int D>
 int verify(const TableVerb& options) {
   const HullTable<D>& table = hull_table<D>();
   const Stopwatch stopwatch;
-  const TableVerification found = verify_hull_table(table);
+  const TableVerification found = [&] {
+    const ProgressBar bar("verify", options.printing.quiet);
+    return verify_hull_table(table);
+  }();
   if (options.printing.json) {
     Json object = json_of<D>(TimedTable<D>());
     object["verification"] = json_of(found);
