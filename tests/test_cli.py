@@ -4,8 +4,11 @@
 """
 
 import gzip
+import itertools
 import json
+import math
 import os
+import pty
 import re
 import shutil
 import signal
@@ -573,6 +576,57 @@ class View(Case):
         self.assert_refused(2, "view", "mesh.vtu", "--iso", "0.5", "-o", "a.html", words=["--iso"])
         self.assert_refused(2, "view", "mesh.vtu", "--track", "-o", "a.html", words=["--track"])
         self.assert_refused(1, "view", field, "--iso", "0.5", "-o", "no/such/folder/a.html", words=["folder"])
+
+class World(Case):
+    """A field whose file turns and scales its axes: surfaces come in the coordinates of the world."""
+
+    def test_surface_and_slice_are_where_the_file_says(self):
+        directions = "(0,2,0) (-2,0,0) (0,0,2) none"  # a quarter turn, twice the size
+        size = 13
+        samples = []
+        for t, z, y, x in itertools.product(range(3), range(size), range(size), range(size)):
+            samples.append(4 - math.dist((x, y, z), (5 + t, 6, 6)))
+        header = (f"NRRD0004\ntype: float\ndimension: 4\nsizes: {size} {size} {size} 3\nspace dimension: 3\n"
+                  f"space directions: {directions}\nspace origin: (100,200,300)\nkinds: domain domain domain time\n"
+                  "spacings: nan nan nan 0.5\naxis mins: nan nan nan 7\n"
+                  "endian: little\nencoding: raw\n\n")
+        (self.folder / "turned.nrrd").write_bytes(header.encode() + struct.pack(f"<{len(samples)}f", *samples))
+        self.ok("extract", "turned.nrrd", "--iso", "0", "-o", "all.vtu")
+        for source in (["turned.nrrd", "--iso", "0"], ["all.vtu"]):
+            for step in range(3):
+                run = self.ok("slice", *source, "--time", 7 + step * 0.5, "--measure", "--json", "-o", "cut.off").json()
+                self.assertEqual(run["measure"]["euler_characteristic"], 2)
+                self.assertAlmostEqual(run["measure"]["content"], 4 * math.pi * 64, delta=20)
+                points = [list(map(float, line.split())) for line in self.surface_points("cut.off")]
+                centre = [(min(column) + max(column)) / 2 for column in zip(*points)]
+                for found, expected in zip(centre, (100 - 2 * 6, 200 + 2 * (5 + step), 300 + 2 * 6)):
+                    self.assertAlmostEqual(found, expected, places=3)
+
+    def surface_points(self, path):
+        lines = (self.folder / path).read_text().split("\n")
+        return lines[2:2 + int(lines[1].split()[0])]
+
+
+class Terminal(Case):
+    # Drawn only there, on one line, and wiped away: what is left on the screen is the report.
+    def test_progress_bar(self):
+        reader, writer = pty.openpty()
+        with subprocess.Popen([PROGRAM, "sample", "noise", "--dims", "100,100,100,6", "-o", "a.nrrd", "--compress"],
+                              stdout=subprocess.PIPE, stderr=writer) as run:
+            os.close(writer)
+            drawn = b""
+            try:
+                while piece := os.read(reader, 4096):
+                    drawn += piece
+            except OSError:  # how Linux says that the other end is closed
+                pass
+            out = run.stdout.read().decode()
+        os.close(reader)
+        self.assertEqual(run.returncode, 0)
+        self.assertIn("wrote", out)
+        self.assertIn(b"write", drawn)
+        self.assertNotIn(b"\n", drawn)
+        self.assertTrue(drawn.endswith(b"\r\x1b[K"), drawn[-80:])
 
 
 class Manual(Case):
