@@ -124,7 +124,7 @@ int run(const Interval& options) {
 
   Outcome outcome{};
   const Stopwatch reading;
-  const Field field = without_flat_axes(read_selection(*reader, selection));
+  const Field field = without_flat_axes(read_selection(*reader, selection, options.printing.quiet));
   outcome.read_seconds = reading.seconds();
 
   const Stopwatch extracting;

@@ -117,7 +117,7 @@ void read_field(const View& options, std::uint64_t size, Content& content) {
   const auto reader = options.input.open(options.machine);
   check_dimension<lowest_shown>(reader->info().dimension(), "the field");
   const Stopwatch reading;
-  Field field = read_selection(*reader, options.input.selection(reader->info()));
+  Field field = read_selection(*reader, options.input.selection(reader->info()), options.printing.quiet);
   content.read_seconds = reading.seconds();
   check_axes(field.info);
 
