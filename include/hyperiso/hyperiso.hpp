@@ -2,6 +2,7 @@
 /// \file
 /// All of hyperiso. The headers are the manual; start with extract.hpp.
 
+#include "hyperiso/colours.hpp"
 #include "hyperiso/convert.hpp"
 #include "hyperiso/extract.hpp"
 #include "hyperiso/field.hpp"

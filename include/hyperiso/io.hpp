@@ -134,7 +134,9 @@ struct WriteMeshOptions {
 /// | vtp      | segments, triangles; not in R^4    | all, to the bit                                      |
 /// | ply      | triangles; not in R^4              | positions as they are; attributes, one property a    |
 /// |          |                                    | component: NAME, or NAME_0, NAME_1, ...; 64-bit      |
-/// |          |                                    | integers as 32-bit ones or, where too large, double  |
+/// |          |                                    | integers as 32-bit ones or, where too large, double; |
+/// |          |                                    | integers red, green and blue from 0 to 255 as bytes: |
+/// |          |                                    | the colours of the vertices                          |
 /// | stl      | triangles; not in R^4              | positions, f32, unshared; normals are computed, 0    |
 /// |          |                                    | for a triangle without area                          |
 /// | obj, off | triangles, obj also segments;      | positions, in as many digits as it takes             |

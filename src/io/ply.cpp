@@ -73,6 +73,13 @@ Column column_of(const std::vector<T>& values, std::size_t first, std::size_t st
           }};
 }
 
+// What programs take for the colours of vertices, if it comes in bytes.
+template <class T>
+bool is_colour(const std::string& name, const std::vector<T>& values) {
+  return std::is_integral_v<T> && (name == "red" || name == "green" || name == "blue") &&
+         std::ranges::all_of(values, [](T value) { return value >= 0 && value <= 255; });
+}
+
 std::vector<Column> columns_of(const Mesh& mesh, Attribute::Location location, std::set<std::string> taken) {
   std::vector<Column> columns;
   for (const Attribute& attribute : mesh.attributes) {
@@ -81,6 +88,8 @@ std::vector<Column> columns_of(const Mesh& mesh, Attribute::Location location, s
     for (std::size_t component = 0; component < components; ++component) {
       columns.push_back(std::visit(
           [&]<class T>(const std::vector<T>& values) {
+            if (components == 1 && is_colour(attribute.name, values))
+              return column_of<T, std::uint8_t>(values, 0, 1);
             if constexpr (std::is_same_v<T, std::int64_t>)
               return all_fit_int(values) ? column_of<T, std::int32_t>(values, component, components)
                                          : column_of<T, double>(values, component, components);
