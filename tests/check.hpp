@@ -60,6 +60,14 @@ OwnedField<T, D> random_field(const std::array<std::int64_t, D>& dims, int range
   return make_field<T, D>(unit_grid<D>(dims), [&](const auto&) { return value(random); });
 }
 
+// The isosurface; an error fails the test.
+template <class T, int D>
+SimplexMesh<D> extracted(const OwnedField<T, D>& field, double isovalue, const ExtractOptions& options = {}) {
+  auto mesh = extract(field.view, isovalue, options);
+  EXPECT_TRUE(mesh) << mesh.error().message;
+  return *std::move(mesh);
+}
+
 // The vertex positions of each simplex, starting from its smallest corner and with its orientation kept by an
 // even permutation: equal for meshes that differ in the numbering of vertices and the order of simplices
 // only.

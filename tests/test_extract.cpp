@@ -12,13 +12,6 @@ using namespace hyperiso::check;
 
 namespace {
 
-template <class T, int D>
-SimplexMesh<D> extracted(const OwnedField<T, D>& field, double isovalue, const ExtractOptions& options = {}) {
-  auto mesh = extract(field.view, isovalue, options);
-  EXPECT_TRUE(mesh) << mesh.error().message;
-  return *std::move(mesh);
-}
-
 // True if a cell that holds all these grid edges touches NaN.
 template <class T, int D>
 bool beside_missing_data(const FieldView<const T, D>& field, const std::vector<GridEdgeEnds<D>>& facet) {

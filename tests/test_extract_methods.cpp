@@ -12,13 +12,6 @@ using namespace hyperiso::check;
 
 namespace {
 
-template <class T, int D>
-SimplexMesh<D> extracted(const OwnedField<T, D>& field, double isovalue, const ExtractOptions& options = {}) {
-  auto mesh = extract(field.view, isovalue, options);
-  EXPECT_TRUE(mesh) << mesh.error().message;
-  return *std::move(mesh);
-}
-
 // Simplices of one cell as lists of edges (two cube vertices).
 using Edge = std::pair<unsigned, unsigned>;
 template <int D>

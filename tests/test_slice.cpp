@@ -12,13 +12,6 @@ using namespace hyperiso::check;
 
 namespace {
 
-template <class T, int D>
-SimplexMesh<D> extracted(const OwnedField<T, D>& field, double isovalue, const ExtractOptions& options = {}) {
-  auto mesh = extract(field.view, isovalue, options);
-  EXPECT_TRUE(mesh) << mesh.error().message;
-  return *std::move(mesh);
-}
-
 template <int D, int K>
 SimplexMesh<D - 1, K - 1> sliced(const SimplexMesh<D, K>& mesh, const Hyperplane<D>& plane,
                                  const SliceOptions& options = {}) {

@@ -20,20 +20,19 @@ decltype(auto) with_known_dimension(int dimension, Use&& use) {
   return use(std::integral_constant<int, D>{});
 }
 
+// Fails with a message about `what` if it does not have `lowest` to `highest` dimensions.
+inline void check_dimension(int dimension, int lowest, int highest, const char* what) {
+  if (dimension < lowest || dimension > highest)
+    fail_usage(text(what, " has ", dimension, dimension == 1 ? " dimension" : " dimensions", "; from ",
+                    lowest, " to ", highest, " are supported"));
+}
+
 // Calls use(std::integral_constant<int, D>) for the D in [Lowest, Highest] that is `dimension`; fails with a
 // message about `what` if there is none.
 template <int Lowest, int Highest = highest_dimension, class Use>
 decltype(auto) with_dimension(int dimension, const char* what, Use&& use) {
-  if (dimension < Lowest || dimension > Highest)
-    fail_usage(text(what, " has ", dimension, dimension == 1 ? " dimension" : " dimensions", "; from ",
-                    Lowest, " to ", Highest, " are supported"));
+  check_dimension(dimension, Lowest, Highest, what);
   return with_known_dimension<Lowest, Highest>(dimension, use);
-}
-
-// Fails as with_dimension does, before any work.
-template <int Lowest, int Highest = highest_dimension>
-void check_dimension(int dimension, const char* what) {
-  with_dimension<Lowest, Highest>(dimension, what, [](auto) {});
 }
 
 // Calls use(view) with the field as a view of its type and dimension.

@@ -1,15 +1,10 @@
 #include "hyperiso/interval.hpp"
 
 #include "cli/command.hpp"
-#include "cli/console.hpp"
-#include "cli/dispatch.hpp"
+#include "cli/field_mesh.hpp"
 #include "cli/manual.hpp"
-#include "cli/options.hpp"
 #include "cli/parse.hpp"
-#include "cli/surface.hpp"
-#include "core/memory.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -18,14 +13,8 @@
 namespace hyperiso::cli {
 namespace {
 
-struct Interval {
-  FieldOptions input;
+struct Interval : FieldMeshOptions {
   std::string range, level_axis = "last";
-  SurfaceOptions surface;
-  MeshOutputOptions output;
-  bool measure = false;
-  PrintOptions printing;
-  MachineOptions machine;
 };
 
 constexpr int highest_interval_dimension = 3;
@@ -54,97 +43,39 @@ IntervalOptions interval_options(const Interval& options) {
   return result;
 }
 
-Mesh volume_of(const Field& field, const std::vector<double>& levels, IntervalOptions options, bool quiet) {
-  ProgressBar bar("interval", quiet);
-  options.progress = bar.callback();
-  Mesh mesh = with_view<lowest_dimension>(field, [&]<class T, int D>(const FieldView<T, D>& view) -> Mesh {
-    if constexpr (D <= highest_interval_dimension)
-      return take(interval(view, std::span<const double>(levels), options));
-    else
-      fail_usage(text("the field has ", D, " dimensions; interval volumes are made of fields of 2 and 3"));
-  });
-  if (field.info.world) transform(mesh, *field.info.world);
-  return mesh;
-}
-
-struct Outcome {
-  std::uint64_t vertices, simplices, active_cells;
-  std::optional<Measure> measure;
-  double read_seconds, extract_seconds, write_seconds;
-};
-
-Json json_of(const Outcome& outcome, const Interval& options, const std::vector<double>& levels,
-             const FieldInfo& info) {
-  Json object{{"dimension", info.dimension()},
-              {"dims", dims_of(info)},
-              {"range", {levels.front(), levels.back()}},
-              {"levels", levels},
-              {"method", options.surface.method},
-              {"inside", options.surface.inside},
-              {"vertices", outcome.vertices},
-              {"simplices", outcome.simplices},
-              {"active_cells", outcome.active_cells},
-              {"seconds",
-               {{"read", outcome.read_seconds},
-                {"extract", outcome.extract_seconds},
-                {"write", outcome.write_seconds}}},
-              {"peak_memory_bytes", peak_memory()}};
-  if (outcome.measure) object["measure"] = cli::json_of(*outcome.measure);
-  return object;
-}
-
 std::string report_of(const Outcome& outcome, const Interval& options, const std::vector<double>& levels,
                       const FieldInfo& info) {
-  const int dimension = info.dimension();
   Report report;
   report.add("field", size_and_type(info));
   report.add(levels.size() == 2 ? "range" : "levels",
              fmt::format("{:.12g}, {}", fmt::join(levels, levels.size() == 2 ? " to " : ", "),
                          options.surface.method));
-  report.add("active cells", grouped(outcome.active_cells));
-  report.add("vertices", grouped(outcome.vertices));
-  report.add(simplex_noun(dimension), grouped(outcome.simplices));
-  if (outcome.measure) add_measure(report, *outcome.measure, dimension);
-  std::string took =
-      seconds(outcome.read_seconds) + " to read, " + seconds(outcome.extract_seconds) + " to extract";
-  if (options.output.wanted()) took += ", " + seconds(outcome.write_seconds) + " to write";
-  report.add("took", took);
-  if (options.output.wanted()) report.add("wrote", options.output.path);
+  add_outcome(report, outcome);
   return report.text();
 }
 
 int run(const Interval& options) {
   const std::vector<double> levels = parse_levels(options.range);
-  const IntervalOptions how = interval_options(options); // wrong ones are told before anything is read
-  const auto reader = options.input.open(options.machine);
-  const Selection selection = options.input.selection(reader->info());
-  const int dimension = without_flat_axes(selected(reader->info(), selection)).dimension();
-  check_dimension<lowest_dimension>(dimension, "the field");
-  if (options.output.wanted()) options.output.check(dimension, dimension, options.output.path);
-
-  Outcome outcome{};
-  const Stopwatch reading;
-  const Field field = without_flat_axes(read_selection(*reader, selection, options.printing.quiet));
-  outcome.read_seconds = reading.seconds();
+  IntervalOptions filling = interval_options(options); // wrong ones are told before anything is read
+  const auto [field, read_seconds] = load_field(options, lowest_dimension, highest_interval_dimension, 0);
 
   const Stopwatch extracting;
-  const Mesh mesh = volume_of(field, levels, how, options.printing.quiet);
-  outcome.extract_seconds = extracting.seconds();
-  outcome.vertices = mesh.vertex_count();
-  outcome.simplices = mesh.simplex_count();
-  outcome.active_cells = mesh.active_cells;
+  const Mesh mesh = make_mesh<highest_interval_dimension>(
+      "interval", field, options.printing.quiet, [&](const auto& view, const Progress& progress) {
+        filling.progress = progress;
+        return interval(view, std::span<const double>(levels), filling);
+      });
+  const double extract_seconds = extracting.seconds();
   if (mesh.simplex_count() == 0 && !options.printing.quiet) print_warning(why_empty(field, levels.front()));
-  if (options.measure) outcome.measure = take(measure(mesh));
 
-  if (options.output.wanted()) {
-    const Stopwatch writing;
-    FileGroup files;
-    take(write_mesh(mesh, options.output.path, options.output.write_options(field.info.axes, files)));
-    take(files.commit());
-    outcome.write_seconds = writing.seconds();
-  }
+  FileGroup files;
+  Outcome outcome = finish(mesh, options, field.info, options.output.path, files);
+  outcome.read_seconds = read_seconds;
+  outcome.extract_seconds = extract_seconds;
+  take(files.commit());
   if (options.printing.json)
-    print_json(json_of(outcome, options, levels, field.info));
+    print_json(json_of(outcome, options, field.info,
+                       {{"range", {levels.front(), levels.back()}}, {"levels", levels}}));
   else
     print(report_of(outcome, options, levels, field.info));
   return 0;

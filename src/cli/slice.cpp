@@ -278,7 +278,7 @@ std::vector<Outcome> slice_field(const Slice& options, Plan& plan) {
     fail_usage("-o: a .pvd series holds one isovalue; give one, or another suffix");
   (void)options.surface.extract_options(options.machine); // wrong ones are told before anything is read
   const auto reader = options.input.open(options.machine);
-  check_dimension<lowest_sliced>(reader->info().dimension(), "the field");
+  check_dimension(reader->info().dimension(), lowest_sliced, highest_dimension, "the field");
   plan.axes = reader->info().axes;
   plan.simplex_dimension = plan.dimension() - 1;
   check_output(options, plan);

@@ -115,7 +115,7 @@ void read_field(const View& options, std::uint64_t size, Content& content) {
   if (isovalues.size() != 1) fail_usage("--iso: a page shows one isovalue");
   (void)options.surface.extract_options(options.machine); // wrong ones are told before anything is read
   const auto reader = options.input.open(options.machine);
-  check_dimension<lowest_shown>(reader->info().dimension(), "the field");
+  check_dimension(reader->info().dimension(), lowest_shown, highest_dimension, "the field");
   const Stopwatch reading;
   Field field = read_selection(*reader, options.input.selection(reader->info()), options.printing.quiet);
   content.read_seconds = reading.seconds();

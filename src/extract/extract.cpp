@@ -1,5 +1,6 @@
 #include "hyperiso/extract.hpp"
 
+#include "core/instantiate.hpp"
 #include "core/text.hpp"
 #include "extract/barycentric.hpp"
 #include "extract/extract_with.hpp"
@@ -56,22 +57,12 @@ Result<SimplexMesh<D>> extract(const FieldView<const T, D>& field, double isoval
   template Status extract_into(const FieldView<const T, D>&, double, const ExtractOptions&,                  \
                                SimplexMesh<D>&);                                                             \
   template Result<SimplexMesh<D>> extract(const FieldView<const T, D>&, double, const ExtractOptions&);
-#define HYPERISO_INSTANTIATE_TYPES(D)                                                                        \
-  HYPERISO_INSTANTIATE_EXTRACT(std::uint8_t, D)                                                              \
-  HYPERISO_INSTANTIATE_EXTRACT(std::int8_t, D)                                                               \
-  HYPERISO_INSTANTIATE_EXTRACT(std::uint16_t, D)                                                             \
-  HYPERISO_INSTANTIATE_EXTRACT(std::int16_t, D)                                                              \
-  HYPERISO_INSTANTIATE_EXTRACT(std::uint32_t, D)                                                             \
-  HYPERISO_INSTANTIATE_EXTRACT(std::int32_t, D)                                                              \
-  HYPERISO_INSTANTIATE_EXTRACT(float, D)                                                                     \
-  HYPERISO_INSTANTIATE_EXTRACT(double, D)
-
-HYPERISO_INSTANTIATE_TYPES(2)
-HYPERISO_INSTANTIATE_TYPES(3)
-HYPERISO_INSTANTIATE_TYPES(4)
-HYPERISO_INSTANTIATE_TYPES(5)
-HYPERISO_INSTANTIATE_TYPES(6)
-HYPERISO_INSTANTIATE_TYPES(7)
-HYPERISO_INSTANTIATE_TYPES(8)
+HYPERISO_FOR_EACH_SAMPLE_TYPE(HYPERISO_INSTANTIATE_EXTRACT, 2)
+HYPERISO_FOR_EACH_SAMPLE_TYPE(HYPERISO_INSTANTIATE_EXTRACT, 3)
+HYPERISO_FOR_EACH_SAMPLE_TYPE(HYPERISO_INSTANTIATE_EXTRACT, 4)
+HYPERISO_FOR_EACH_SAMPLE_TYPE(HYPERISO_INSTANTIATE_EXTRACT, 5)
+HYPERISO_FOR_EACH_SAMPLE_TYPE(HYPERISO_INSTANTIATE_EXTRACT, 6)
+HYPERISO_FOR_EACH_SAMPLE_TYPE(HYPERISO_INSTANTIATE_EXTRACT, 7)
+HYPERISO_FOR_EACH_SAMPLE_TYPE(HYPERISO_INSTANTIATE_EXTRACT, 8)
 
 } // namespace hyperiso

@@ -1,5 +1,6 @@
 #include "hyperiso/interval.hpp"
 
+#include "core/instantiate.hpp"
 #include "core/text.hpp"
 #include "extract/engine.hpp"
 
@@ -99,17 +100,7 @@ Result<VolumeMesh<D>> interval(const FieldView<const T, D>& field, std::span<con
 #define HYPERISO_INSTANTIATE_INTERVAL(T, D)                                                                  \
   template Result<VolumeMesh<D>> interval(const FieldView<const T, D>&, std::span<const double>,             \
                                           const IntervalOptions&);
-#define HYPERISO_INSTANTIATE_TYPES(D)                                                                        \
-  HYPERISO_INSTANTIATE_INTERVAL(std::uint8_t, D)                                                             \
-  HYPERISO_INSTANTIATE_INTERVAL(std::int8_t, D)                                                              \
-  HYPERISO_INSTANTIATE_INTERVAL(std::uint16_t, D)                                                            \
-  HYPERISO_INSTANTIATE_INTERVAL(std::int16_t, D)                                                             \
-  HYPERISO_INSTANTIATE_INTERVAL(std::uint32_t, D)                                                            \
-  HYPERISO_INSTANTIATE_INTERVAL(std::int32_t, D)                                                             \
-  HYPERISO_INSTANTIATE_INTERVAL(float, D)                                                                    \
-  HYPERISO_INSTANTIATE_INTERVAL(double, D)
-
-HYPERISO_INSTANTIATE_TYPES(2)
-HYPERISO_INSTANTIATE_TYPES(3)
+HYPERISO_FOR_EACH_SAMPLE_TYPE(HYPERISO_INSTANTIATE_INTERVAL, 2)
+HYPERISO_FOR_EACH_SAMPLE_TYPE(HYPERISO_INSTANTIATE_INTERVAL, 3)
 
 } // namespace hyperiso

@@ -2,6 +2,7 @@
 
 #include "hyperiso/slice.hpp"
 
+#include "core/instantiate.hpp"
 #include "core/text.hpp"
 #include "slice/cut.hpp"
 #include "slice/trace.hpp"
@@ -175,18 +176,10 @@ HYPERISO_INSTANTIATE_SLICE(4, 3);
 HYPERISO_INSTANTIATE_SLICE(3, 3);
 HYPERISO_INSTANTIATE_SLICE(4, 4);
 
-#define HYPERISO_INSTANTIATE_FIELD_SLICE(T)                                                                  \
-  template Result<SimplexMesh<2>> slice(const FieldView<const T, 3>&, double, const Hyperplane<3>&,          \
-                                        const ExtractOptions&);                                              \
-  template Result<SimplexMesh<3>> slice(const FieldView<const T, 4>&, double, const Hyperplane<4>&,          \
-                                        const ExtractOptions&)
-HYPERISO_INSTANTIATE_FIELD_SLICE(std::uint8_t);
-HYPERISO_INSTANTIATE_FIELD_SLICE(std::int8_t);
-HYPERISO_INSTANTIATE_FIELD_SLICE(std::uint16_t);
-HYPERISO_INSTANTIATE_FIELD_SLICE(std::int16_t);
-HYPERISO_INSTANTIATE_FIELD_SLICE(std::uint32_t);
-HYPERISO_INSTANTIATE_FIELD_SLICE(std::int32_t);
-HYPERISO_INSTANTIATE_FIELD_SLICE(float);
-HYPERISO_INSTANTIATE_FIELD_SLICE(double);
+#define HYPERISO_INSTANTIATE_FIELD_SLICE(T, D)                                                               \
+  template Result<SimplexMesh<D - 1>> slice(const FieldView<const T, D>&, double, const Hyperplane<D>&,      \
+                                            const ExtractOptions&);
+HYPERISO_FOR_EACH_SAMPLE_TYPE(HYPERISO_INSTANTIATE_FIELD_SLICE, 3)
+HYPERISO_FOR_EACH_SAMPLE_TYPE(HYPERISO_INSTANTIATE_FIELD_SLICE, 4)
 
 } // namespace hyperiso

@@ -1,0 +1,69 @@
+#include "cli/field_mesh.hpp"
+
+#include "core/memory.hpp"
+
+namespace hyperiso::cli {
+
+LoadedField load_field(const FieldMeshOptions& options, int lowest, int highest, int codimension) {
+  const auto reader = options.input.open(options.machine);
+  const Selection selection = options.input.selection(reader->info());
+  const int dimension = without_flat_axes(selected(reader->info(), selection)).dimension();
+  check_dimension(dimension, lowest, highest, "the field");
+  if (options.output.wanted()) options.output.check(dimension, dimension - codimension, options.output.path);
+
+  const Stopwatch reading;
+  LoadedField loaded{without_flat_axes(read_selection(*reader, selection, options.printing.quiet))};
+  loaded.read_seconds = reading.seconds();
+  return loaded;
+}
+
+Outcome finish(const Mesh& mesh, const FieldMeshOptions& options, const FieldInfo& info,
+               const std::string& path, FileGroup& files) {
+  const bool quiet = options.printing.quiet;
+  Outcome outcome;
+  outcome.simplex_dimension = mesh.simplex_dimension;
+  outcome.vertices = mesh.vertex_count();
+  outcome.simplices = mesh.simplex_count();
+  outcome.active_cells = mesh.active_cells;
+  outcome.path = path;
+  if (options.measure) outcome.measure = measure_of(mesh, quiet);
+  if (options.self_intersections) outcome.self_intersections = self_intersections_of(mesh, quiet);
+  if (path.empty()) return outcome;
+
+  const Stopwatch writing;
+  const ProgressBar bar("write", quiet);
+  take(write_mesh(mesh, path, options.output.write_options(info.axes, files)));
+  outcome.write_seconds = writing.seconds();
+  return outcome;
+}
+
+Json json_of(const Outcome& outcome, const FieldMeshOptions& options, const FieldInfo& info, Json about) {
+  Json object{{"dimension", info.dimension()}, {"dims", dims_of(info)}};
+  object.update(about);
+  object["method"] = options.surface.method;
+  object["inside"] = options.surface.inside;
+  object["vertices"] = outcome.vertices;
+  object["simplices"] = outcome.simplices;
+  object["active_cells"] = outcome.active_cells;
+  object["seconds"] = {
+      {"read", outcome.read_seconds}, {"extract", outcome.extract_seconds}, {"write", outcome.write_seconds}};
+  object["peak_memory_bytes"] = peak_memory();
+  if (outcome.measure) object["measure"] = json_of(*outcome.measure);
+  if (outcome.self_intersections) object["self_intersections"] = json_of(*outcome.self_intersections);
+  return object;
+}
+
+void add_outcome(Report& report, const Outcome& outcome) {
+  report.add("active cells", grouped(outcome.active_cells));
+  report.add("vertices", grouped(outcome.vertices));
+  report.add(simplex_noun(outcome.simplex_dimension), grouped(outcome.simplices));
+  if (outcome.measure) add_measure(report, *outcome.measure, outcome.simplex_dimension);
+  if (outcome.self_intersections) add_self_intersections(report, *outcome.self_intersections);
+  std::string took =
+      seconds(outcome.read_seconds) + " to read, " + seconds(outcome.extract_seconds) + " to extract";
+  if (!outcome.path.empty()) took += ", " + seconds(outcome.write_seconds) + " to write";
+  report.add("took", took);
+  if (!outcome.path.empty()) report.add("wrote", outcome.path);
+}
+
+} // namespace hyperiso::cli
