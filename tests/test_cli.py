@@ -3,6 +3,7 @@
     test_cli.py PROGRAM
 """
 
+import ast
 import gzip
 import itertools
 import json
@@ -18,12 +19,13 @@ import sys
 import tempfile
 import time
 import unittest
+import zipfile
 from pathlib import Path
 
 PROGRAM = Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else Path("build/release/bin/hyperiso").resolve()
 ROOT = Path(__file__).resolve().parent.parent
 WATER = "examples/data/alpha_water_24x24x24x41.nrrd"
-VERBS = ["info", "extract", "interval", "slice", "track", "measure", "table", "sample", "convert"]
+VERBS = ["info", "extract", "interval", "slice", "morph", "track", "measure", "table", "sample", "convert"]
 
 HAS_VIEW = b"\n  view " in subprocess.run([PROGRAM, "--help"], capture_output=True, check=True).stdout
 if HAS_VIEW:
@@ -269,6 +271,73 @@ class SliceOfAMesh(Case):
             self.assertGreaterEqual(part, 0)
         for source in (["moving.vtu"], ["moving.nrrd", "--iso", "0.5"]):
             self.assert_refused(2, "slice", *source, "--time", "99", "-o", "x.vtp", words=["99", "axis t"])
+
+
+class Morph(Case):
+    """Moving pieces; .npz is read back by zipfile and struct, without NumPy."""
+
+    def arrays(self, path):
+        arrays, types = {}, {"<f4": "<f", "<f8": "<d", "<u8": "<Q"}
+        with zipfile.ZipFile(path) as archive:
+            self.assertIsNone(archive.testzip())
+            for name in archive.namelist():
+                content = archive.read(name)
+                self.assertEqual(content[:8], b"\x93NUMPY\x01\x00")
+                start = 10 + struct.unpack("<H", content[8:10])[0]
+                self.assertEqual(start % 64, 0)
+                header = ast.literal_eval(content[10:start].decode())
+                numbers = [number for number, in struct.iter_unpack(types[header["descr"]], content[start:])]
+                self.assertEqual(len(numbers), math.prod(header["shape"]))
+                arrays[name.removesuffix(".npy")] = (header["shape"], numbers)
+        return arrays
+
+    def test_pieces_at_a_time_have_the_area_of_the_slice(self):
+        self.sample("torus-morph", "12,12,12,5", "torus.nrrd")
+        pieces = self.ok("morph", "torus.nrrd", "--iso", "0.5", "--precision", "f64", "-o", "pieces.npz", "--json").json()
+        arrays = self.arrays("pieces.npz")
+        count = pieces["pieces"]
+        self.assertEqual({name: shape for name, (shape, _) in arrays.items()},
+                         {"start": (count, 3, 3), "end": (count, 3, 3), "start_time": (count,), "end_time": (count,),
+                          "simplex": (count,)})
+        start, end, first, last = (arrays[name][1] for name in ["start", "end", "start_time", "end_time"])
+        cut = self.ok("slice", "torus.nrrd", "--iso", "0.5", "--precision", "f64", "--time", "0.4", "--measure",
+                      "--json").json()
+        area = 0
+        for piece in range(count):
+            if first[piece] < 0.4 <= last[piece]:
+                share = (0.4 - first[piece]) / (last[piece] - first[piece])
+                a, b, c = ([start[9 * piece + 3 * corner + k] * (1 - share) + end[9 * piece + 3 * corner + k] * share
+                            for k in range(3)] for corner in range(3))
+                u, v = [q - p for p, q in zip(a, b)], [q - p for p, q in zip(a, c)]
+                area += math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]) / 2
+        self.assertAlmostEqual(area, cut["measure"]["content"], places=9)
+
+    def test_a_mesh_gives_the_pieces_of_its_field(self):
+        self.sample("ball", "9,9,9,5", "ball.nrrd")
+        self.ok("extract", "ball.nrrd", "--iso", "0.5", "-o", "ball.vtu")
+        self.ok("morph", "ball.nrrd", "--iso", "0.5", "-o", "field.npz")
+        self.ok("morph", "ball.vtu", "-o", "mesh.npz")
+        self.assertEqual((self.folder / "field.npz").read_bytes(), (self.folder / "mesh.npz").read_bytes())
+        count = self.ok("morph", "ball.vtu", "-o", "mesh.vtu", "--json").json()["pieces"]
+        self.assertEqual(self.ok("measure", "mesh.vtu", "--json").json()["simplices"], count)
+
+    def test_two_dimensions_through_time_give_segments(self):
+        self.sample("ball", "9,9,5", "disc.nrrd")
+        self.ok("morph", "disc.nrrd", "--iso", "0.5", "-o", "disc.npz")
+        self.assertEqual(self.arrays("disc.npz")["start"][0][1:], (2, 2))
+
+    def test_wrong_usage(self):
+        self.sample("ball", "9,9,9,5", "ball.nrrd")
+        self.sample("ball", "9,9", "flat.nrrd")
+        self.sample("ball", "5,5,5,5,5", "five.nrrd")
+        self.ok("interval", "ball.nrrd", "--steps", "0:1", "--range", "0:0.5", "-o", "volume.vtu")
+        for arguments, words in [(["ball.nrrd"], ["--iso"]), (["ball.nrrd", "--iso", "0.1,0.2"], ["--iso", "one"]),
+                                 (["ball.nrrd", "--iso", "0.5", "-o", "x.stpl"], ["x.stpl", "npz"]),
+                                 (["flat.nrrd", "--iso", "0.5"], ["2 dimensions"]),
+                                 (["five.nrrd", "--iso", "0.5"], ["5 dimensions"]),
+                                 (["volume.vtu"], ["volume.vtu", "tetrahedra in 3"])]:
+            self.assert_refused(2, "morph", *arguments, words=words)
+        self.assert_refused(1, "morph", "ball.nrrd", "--iso", "0.5", "-o", "missing/x.npz", words=["missing/x.npz"])
 
 
 class FlatAxes(Case):

@@ -11,6 +11,8 @@
 #include "hyperiso/io.hpp"
 #include "hyperiso/measure.hpp"
 #include "hyperiso/mesh.hpp"
+#include "hyperiso/morph.hpp"
+#include "hyperiso/morph_files.hpp"
 #include "hyperiso/polylines.hpp"
 #include "hyperiso/progress.hpp"
 #include "hyperiso/result.hpp"
