@@ -22,6 +22,7 @@
 #include "hyperiso/slice.hpp"
 #include "hyperiso/statistics.hpp"
 #include "hyperiso/step_source.hpp"
+#include "hyperiso/stream.hpp"
 #include "hyperiso/table.hpp"
 #include "hyperiso/track.hpp"
 #include "hyperiso/track_files.hpp"

@@ -4,6 +4,7 @@
 #include "core/text.hpp"
 #include "extract/barycentric.hpp"
 #include "extract/missing.hpp"
+#include "extract/slab_engine.hpp"
 #include "extract/units.hpp"
 #include "extract/vertex_output.hpp"
 
@@ -21,10 +22,11 @@ class Engine {
         grid_(samples.dims), workers_(worker_count(options.threads)),
         kernels_(kernels<D, M>(engine_options.instructions)),
         row_kernels_(row_kernels(samples.test.type, engine_options.instructions)),
-        table_(march_table<D>(options.method, form)),
-        plan_(plan_units(grid_, workers_, engine_options.unit_samples)) {}
+        table_(march_table<D>(options.method, form)) {}
 
+  // Of the whole field.
   Status run() {
+    plan_ = plan_units(grid_, workers_, engine_options_.unit_samples);
     prepare_numbers();
     if (Status status = scan(); !status) return status;
     if (found_missing_) {
@@ -35,7 +37,7 @@ class Engine {
     return emit();
   }
 
- private:
+ protected: // for what extracts layer by layer
   using Edges = CellEdges<D, M>;
 
   // The share of the work that phase 1 is taken to be, for progress.
@@ -64,6 +66,15 @@ class Engine {
     MaskWindow window;              // if units are not linked
     std::vector<Pending> pending;   // the last is that of the current unit
     std::vector<VertexBatch> spare; // empty, to be used again
+
+    // What it found. The memory is used again.
+    void forget() {
+      cells.runs.clear();
+      cells.restarts.clear();
+      cells.code_count = 0;
+      window.last_layer = -1;
+      pending.clear();
+    }
   };
 
   Status scan() {
@@ -71,9 +82,11 @@ class Engine {
     ledger_.emplace(units);
     output_.emplace(mesh_, options_.precision == Precision::f64, options_.keep_edges, options_.memory_limit);
     unit_cells_.assign(units, {});
-    windows_.assign(plan_.linked ? plan_.blocks : 0, {});
-    worker_state_.clear();
+    windows_.resize(plan_.linked ? plan_.blocks : 0);
+    for (MaskWindow& window : windows_) window.last_layer = plan_.units.front().first_layer - 1;
     worker_state_.resize(static_cast<std::size_t>(workers_));
+    for (Worker& worker : worker_state_) worker.forget();
+    vertices_ = simplices_ = active_cells_ = 0;
     found_missing_ = cancelled_ = false;
     next_unit_ = 0;
     run_workers(workers_, [&](int worker) {
@@ -129,6 +142,7 @@ class Engine {
                    &table_,
                    options_.precision == Precision::f64,
                    options_.keep_edges,
+                   first_row_,
                    &numbers_,
                    plan_.units[unit],
                    &window,
@@ -176,7 +190,7 @@ class Engine {
   static Error cancelled() { return {Code::cancelled, "the extraction was cancelled"}; }
 
   Status check_memory() {
-    wide_indices_ = engine_options_.wide_indices || vertices_ > UINT32_MAX;
+    wide_indices_ = engine_options_.wide_indices || first_vertex_ + vertices_ > UINT32_MAX;
     const std::uint64_t index_bytes = wide_indices_ ? sizeof(std::uint64_t) : sizeof(std::uint32_t);
     if (simplices_ > SIZE_MAX / (D * sizeof(std::uint64_t))) throw std::bad_alloc();
     const std::uint64_t needed = vertices_ * output_->bytes_per_vertex() + simplices_ * D * index_bytes;
@@ -194,7 +208,7 @@ class Engine {
   void number_planes() {
     for (std::size_t number = 0; number < plan_.units.size(); ++number) {
       const Unit& unit = plan_.units[number];
-      const std::uint64_t first = *ledger_->first_vertex(number);
+      const std::uint64_t first = first_vertex_ + *ledger_->first_vertex(number);
       for (std::int64_t layer = unit.first_layer; layer < unit.end_layer; ++layer)
         for (std::int64_t row = unit.first_row; row < unit.end_row; row += numbers_.plane_rows)
           numbers_.plane_first[static_cast<std::size_t>((layer * grid_.layer_rows + row) /
@@ -237,8 +251,10 @@ class Engine {
   const Kernels<D, M> kernels_;
   const RowKernels row_kernels_;
   const MarchTable<D>& table_;
-  const UnitPlan<D> plan_;
 
+  UnitPlan<D> plan_;               // of the layers to scan
+  std::int64_t first_row_ = 0;     // number of row 0 in the whole field
+  std::uint64_t first_vertex_ = 0; // vertices before those of these layers
   PresentCells present_;
   VertexNumbers numbers_;
   std::vector<MaskWindow> windows_; // if units are linked: one per block
@@ -252,7 +268,134 @@ class Engine {
   bool wide_indices_ = false;
 };
 
+// Three layers, of which the last two are in memory: layer 1 is the lower step of the slab and layer 2 the
+// upper one; of the step before them, layer 0, it is enough to know that there was one, and where its cells
+// had no NaN. For the first slab the layers are 0 and 1. So the loops see layers one after the other, as in a
+// whole field.
+template <int D>
+struct Window {
+  Samples<D> window;
+};
+
+template <int D, Method M>
+class SlabRun final : private Window<D>, private Engine<D, M>, public SlabEngine<D> {
+ public:
+  SlabRun(const Samples<D>& field, TableForm form, const ExtractOptions& options,
+          const EngineOptions& engine_options, SimplexMesh<D>& mesh)
+      : Window<D>{with_layers(field)}, Engine<D, M>(Window<D>::window, form, options, engine_options, mesh),
+        times_(field.coordinates[D - 1]) {}
+
+  Status extract(const std::byte* lower, const std::byte* upper, const FollowingStep& following) override {
+    place_window(lower, upper);
+    const std::int64_t layer = lower_layer();
+    this->plan_ = plan_layers(this->grid_, this->workers_, this->engine_options_.unit_samples,
+                              layer == 0 ? 0 : 2, layer + 2);
+    if (step_ == 0) this->prepare_numbers();
+    if (!this->present_.all())
+      if (Status status = find_present(layer + 1, upper, following); !status) return status;
+    if (Status status = this->scan(); !status) return status;
+    if (this->found_missing_) {
+      if (Status status = begin_missing(lower, upper, following); !status) return status;
+      if (Status status = this->scan(); !status) return status;
+    }
+    this->number_planes();
+    if (Status status = this->emit(); !status) return status;
+    this->first_vertex_ += this->vertices_;
+    if (step_ > 0) forget_lower_layer();
+    ++step_;
+    return {};
+  }
+
+ private:
+  static Samples<D> with_layers(Samples<D> field) {
+    field.dims[D - 1] = 3;
+    return field;
+  }
+  std::int64_t lower_layer() const { return step_ == 0 ? 0 : 1; }
+
+  // How far a step lies behind another, in samples.
+  std::int64_t distance(const std::byte* from, const std::byte* to) const {
+    return (reinterpret_cast<std::intptr_t>(to) - reinterpret_cast<std::intptr_t>(from)) /
+           static_cast<std::intptr_t>(this->window.sample_size);
+  }
+
+  void place_window(const std::byte* lower, const std::byte* upper) {
+    Samples<D>& samples = this->window;
+    const std::int64_t first_step = step_ - lower_layer();
+    samples.strides[D - 1] = distance(lower, upper);
+    const auto back = lower_layer() * samples.strides[D - 1] * static_cast<std::int64_t>(samples.sample_size);
+    samples.first = reinterpret_cast<const std::byte*>(reinterpret_cast<std::intptr_t>(lower) - back);
+    samples.coordinates[D - 1].assign(3, times_.back());
+    for (std::size_t layer = 0; layer < 3; ++layer)
+      if (const std::size_t step = static_cast<std::size_t>(first_step) + layer; step < times_.size())
+        samples.coordinates[D - 1][layer] = times_[step];
+    this->first_row_ = first_step * this->grid_.layer_rows;
+  }
+
+  // The upper layer becomes the lower one.
+  void forget_lower_layer() {
+    for (MaskWindow& masks : this->windows_) {
+      std::swap(masks.masks[0], masks.masks[1]);
+      std::swap(masks.uniform[0], masks.uniform[1]);
+    }
+    const auto move_up = [](auto& numbers, int from, int to) {
+      const std::size_t layer = numbers.size() / 3;
+      std::copy_n(numbers.data() + static_cast<std::size_t>(from) * layer, layer,
+                  numbers.data() + static_cast<std::size_t>(to) * layer);
+    };
+    move_up(this->numbers_.row_first, 2, 1);
+    move_up(this->numbers_.plane_first, 2, 1);
+    if (this->present_.all()) return;
+    move_up(this->present_.words, 1, 0);
+    move_up(this->present_.words, 2, 1);
+  }
+
+  // From the first NaN on, which cells have none is kept for the slab, and for those on both its sides: they
+  // decide which edges within its steps carry a vertex.
+  Status begin_missing(const std::byte* lower, const std::byte* upper, const FollowingStep& following) {
+    const std::int64_t layer = lower_layer();
+    this->present_.words.reset(static_cast<std::size_t>(this->grid_.rows * this->grid_.words));
+    if (layer == 1) find_present(0, lower, lower); // as in the slab before, no sample was missing
+    find_present(layer, lower, upper);
+    return find_present(layer + 1, upper, following);
+  }
+  // Between the upper step of the slab and the following one; no cell if there is none.
+  Status find_present(std::int64_t layer, const std::byte* upper, const FollowingStep& following) {
+    const Result<const std::byte*> next = following();
+    if (!next) return next.error();
+    if (*next)
+      find_present(layer, upper, *next);
+    else
+      std::fill_n(present_layer(layer), this->present_.words.size() / 3, 0);
+    return {};
+  }
+  void find_present(std::int64_t layer, const std::byte* lower, const std::byte* upper) {
+    Samples<D> samples = this->window;
+    samples.first = lower;
+    samples.dims[D - 1] = 2;
+    samples.strides[D - 1] = distance(lower, upper);
+    const PresentCells cells =
+        find_present_cells(samples, RowGrid<D>(samples.dims), this->row_kernels_, this->workers_);
+    std::copy_n(cells.words.data(), this->present_.words.size() / 3, present_layer(layer));
+  }
+  std::uint64_t* present_layer(std::int64_t layer) {
+    return this->present_.words.data() + static_cast<std::size_t>(layer) * (this->present_.words.size() / 3);
+  }
+
+  const std::vector<double> times_; // of all steps
+  std::int64_t step_ = 0;           // the lower one of the next slab
+};
+
 } // namespace
+
+template <int D>
+std::unique_ptr<SlabEngine<D>> make_slab_engine(const Samples<D>& field, TableForm form,
+                                                const ExtractOptions& options,
+                                                const EngineOptions& engine_options, SimplexMesh<D>& mesh) {
+  if (options.method == Method::simplicial)
+    return std::make_unique<SlabRun<D, Method::simplicial>>(field, form, options, engine_options, mesh);
+  return std::make_unique<SlabRun<D, Method::hull>>(field, form, options, engine_options, mesh);
+}
 
 template <int D>
 Status run_engine(const Samples<D>& samples, TableForm form, const ExtractOptions& options,
@@ -272,5 +415,14 @@ template Status run_engine(const Samples<4>&, TableForm, const ExtractOptions&, 
                            SimplexMesh<4>&);
 template Status run_engine(const Samples<5>&, TableForm, const ExtractOptions&, const EngineOptions&,
                            SimplexMesh<5>&);
+
+template std::unique_ptr<SlabEngine<2>> make_slab_engine(const Samples<2>&, TableForm, const ExtractOptions&,
+                                                         const EngineOptions&, SimplexMesh<2>&);
+template std::unique_ptr<SlabEngine<3>> make_slab_engine(const Samples<3>&, TableForm, const ExtractOptions&,
+                                                         const EngineOptions&, SimplexMesh<3>&);
+template std::unique_ptr<SlabEngine<4>> make_slab_engine(const Samples<4>&, TableForm, const ExtractOptions&,
+                                                         const EngineOptions&, SimplexMesh<4>&);
+template std::unique_ptr<SlabEngine<5>> make_slab_engine(const Samples<5>&, TableForm, const ExtractOptions&,
+                                                         const EngineOptions&, SimplexMesh<5>&);
 
 } // namespace hyperiso

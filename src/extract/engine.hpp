@@ -24,6 +24,9 @@
 // 1 all counts are known, and every unit of phase 2 knows where it writes. So the result does not depend on
 // the number of threads.
 //
+// Slabs (slab_engine.hpp). Two steps of a field are enough for the part of the surface between them: the same
+// passes over two layers, which go on with the masks and the vertex numbers of the layer before.
+//
 // Only the functions on one row of samples know the sample type (samples.hpp). The loops are compiled once
 // for each set of instructions (kernels.hpp) and give the same bytes with each. The reference loop
 // (reference.hpp) defines what they must give.

@@ -3,6 +3,7 @@
 #include "core/instantiate.hpp"
 #include "core/text.hpp"
 #include "extract/barycentric.hpp"
+#include "extract/check_options.hpp"
 #include "extract/extract_with.hpp"
 #include "extract/reference.hpp"
 
@@ -29,11 +30,7 @@ Status check_dimension(Method method, int dimension) {
 template <class T, int D>
 Status extract_into(const FieldView<const T, D>& field, double isovalue, const ExtractOptions& options,
                     SimplexMesh<D>& mesh) {
-  if (!std::isfinite(isovalue))
-    return Error{Code::invalid_isovalue, text("the isovalue is ", isovalue, "; it must be a finite number")};
-  if (options.threads < 0)
-    return Error{Code::invalid_argument,
-                 text("the number of threads is ", options.threads, "; it must be positive, or 0 for all")};
+  if (Status status = check_arguments(isovalue, options.threads); !status) return status;
   if (Status status = check_dimension(options.method, D); !status) return status;
   try {
     if constexpr (D <= 5)

@@ -136,6 +136,7 @@ struct ScanJob {
   const PresentCells* present; // nothing missing if all()
   const MarchTable<D>* table;
   bool wide_positions, keep_edges;
+  std::int64_t first_row; // number of row 0 in the whole field, for the numbers of edges
   VertexNumbers* numbers;
 
   Unit unit;

@@ -8,6 +8,7 @@
 #include "core/text.hpp"
 #include "core/union_find.hpp"
 #include "extract/cell_corners.hpp"
+#include "extract/check_options.hpp"
 
 #include <algorithm>
 #include <map>
@@ -358,8 +359,7 @@ Result<TracedSurface<D>> trace(const LazyField<D>& field, double isovalue, const
 template <int D>
 Result<TracedSurface<D>> extract_from_seeds(const LazyField<D>& field, double isovalue, const Seeds<D>& seeds,
                                             const ExtractOptions& options) {
-  if (!std::isfinite(isovalue))
-    return Error{Code::invalid_isovalue, text("the isovalue is ", isovalue, "; it must be a finite number")};
+  if (Status status = check_arguments(isovalue, options.threads); !status) return status.error();
   if (options.method == Method::barycentric)
     return Error{Code::invalid_argument,
                  "surfaces are traced by the methods hull, component and simplicial, not by barycentric"};

@@ -32,22 +32,46 @@ struct UnitPlan {
   }
 };
 
+// A batch of a unit's vertices fits the second-level cache.
+constexpr std::int64_t usual_unit_samples = 1 << 16;
+
+// How many blocks to part a layer into, so that each has about `wanted` samples.
+template <int D>
+std::size_t blocks_of_layer(const RowGrid<D>& grid, int workers, std::int64_t wanted) {
+  // A block makes the masks of the plane (`halo` rows) before it again: with 8 planes and more that costs
+  // little.
+  const std::int64_t planes = D > 2 ? grid.dims[D - 2] : 1;
+  const std::int64_t most = std::min(planes / 8, grid.dims[0] * grid.layer_rows / wanted);
+  return static_cast<std::size_t>(std::clamp<std::int64_t>(most, 1, 4 * workers));
+}
+
+// Adds the units of the layers [first, end), `unit_layers` each, to a plan whose blocks are known.
+template <int D>
+void add_units(UnitPlan<D>& plan, const RowGrid<D>& grid, std::int64_t first, std::int64_t end,
+               std::int64_t unit_layers) {
+  const auto bound = [&](std::size_t block) {
+    if (plan.blocks == 1) return block == 0 ? std::int64_t{0} : grid.layer_rows;
+    return grid.dims[D - 2] * static_cast<std::int64_t>(block) / static_cast<std::int64_t>(plan.blocks) *
+           grid.halo;
+  };
+  for (std::int64_t layer = first; layer < end; layer += unit_layers)
+    for (std::size_t block = 0; block < plan.blocks; ++block)
+      plan.units.push_back(
+          {layer, std::min(layer + unit_layers, end), bound(block), bound(block + 1), block});
+}
+
+// Of the whole field.
 template <int D>
 UnitPlan<D> plan_units(const RowGrid<D>& grid, int workers, std::int64_t unit_samples) {
-  constexpr std::int64_t usual_samples = 1 << 16; // a batch of its vertices fits the second-level cache
-  const std::int64_t wanted = unit_samples > 0 ? unit_samples : usual_samples;
+  const std::int64_t wanted = unit_samples > 0 ? unit_samples : usual_unit_samples;
   const std::int64_t layers = grid.dims[D - 1], layer_samples = grid.dims[0] * grid.layer_rows;
-  const std::int64_t block_planes = D > 2 ? grid.dims[D - 2] : 1; // a plane: `halo` rows
-
   UnitPlan<D> plan;
   std::int64_t unit_layers = 1;
   if (workers == 1) {
     plan.linked = true;
     unit_layers = std::max<std::int64_t>(1, wanted / layer_samples);
   } else {
-    // A block makes the masks of the plane before it again: with 8 planes and more that costs little.
-    const std::int64_t most = std::min<std::int64_t>(block_planes / 8, layer_samples / wanted);
-    plan.blocks = static_cast<std::size_t>(std::clamp<std::int64_t>(most, 1, 4 * workers));
+    plan.blocks = blocks_of_layer(grid, workers, wanted);
     plan.linked = plan.blocks > static_cast<std::size_t>(workers);
     if (!plan.linked) {
       plan.blocks = 1;
@@ -56,16 +80,19 @@ UnitPlan<D> plan_units(const RowGrid<D>& grid, int workers, std::int64_t unit_sa
       unit_layers = std::max(share, halo_small);
     }
   }
-  for (std::int64_t layer = 0; layer < layers; layer += unit_layers)
-    for (std::size_t block = 0; block < plan.blocks; ++block) {
-      const auto bound = [&](std::size_t b) {
-        if (plan.blocks == 1) return b == 0 ? std::int64_t{0} : grid.layer_rows;
-        return block_planes * static_cast<std::int64_t>(b) / static_cast<std::int64_t>(plan.blocks) *
-               grid.halo;
-      };
-      plan.units.push_back(
-          {layer, std::min(layer + unit_layers, layers), bound(block), bound(block + 1), block});
-    }
+  add_units(plan, grid, 0, layers, unit_layers);
+  return plan;
+}
+
+// Of the layers [first, end) alone, the masks of the layer before them being known.
+template <int D>
+UnitPlan<D> plan_layers(const RowGrid<D>& grid, int workers, std::int64_t unit_samples, std::int64_t first,
+                        std::int64_t end) {
+  UnitPlan<D> plan;
+  plan.linked = true;
+  if (workers > 1)
+    plan.blocks = blocks_of_layer(grid, workers, unit_samples > 0 ? unit_samples : usual_unit_samples);
+  add_units(plan, grid, first, end, 1);
   return plan;
 }
 

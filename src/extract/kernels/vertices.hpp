@@ -58,7 +58,7 @@ class EdgeQueue {
  public:
   explicit EdgeQueue(const ScanJob<D>& job)
       : samples_(*job.samples), row_kernels_(*job.row_kernels), wide_(job.wide_positions),
-        keep_edges_(job.keep_edges) {
+        keep_edges_(job.keep_edges), first_row_(job.first_row) {
     const auto most_in_row = static_cast<std::size_t>(job.grid->dims[0]) * CellEdges<D, M>::directions;
     upper_.resize(enough + most_in_row + 64);
     group_.resize(upper_.size());
@@ -78,7 +78,7 @@ class EdgeQueue {
 
   // The row that the following edges end in: its number, the index of its first sample, and that sample.
   void set_row(std::int64_t row, const std::array<std::int64_t, D>& index, const std::byte* samples) {
-    row_ = row;
+    row_ = first_row_ + row;
     layer_ = static_cast<std::size_t>(index[D - 1]);
     row_samples_ = samples;
     // A row without edges leaves its place to the next.
@@ -219,6 +219,7 @@ class EdgeQueue {
   const Samples<D>& samples_;
   const RowKernels& row_kernels_;
   const bool wide_, keep_edges_;
+  const std::int64_t first_row_;
   std::array<std::int64_t, 1 << D> bytes_back_{}; // from the upper to the lower end, by direction
   // Of the current row.
   std::int64_t row_ = 0;
