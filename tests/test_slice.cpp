@@ -1,6 +1,7 @@
 // Slices of random and of known surfaces: sound on every plane, and the field's own surface at a stored step.
 
 #include "check.hpp"
+#include "hyperiso/interpolate.hpp"
 #include "hyperiso/slice.hpp"
 
 #include <cmath>
@@ -373,6 +374,139 @@ TEST(Slice, contents_of_all_slices_add_up_to_the_surface) {
                  ->content *
              width;
     EXPECT_NEAR(sum / weighed, 1, 2e-3);
+  }
+}
+
+// A field that is read slab by slab must give what its whole mesh gives, to the bit: on planes in general
+// position, through samples, along faces of cells, and where rounding decides.
+TEST(FieldSlicer, any_plane_gives_what_the_whole_mesh_gives) {
+  const std::vector<Hyperplane<4>> planes{
+      {{0.3, -0.2, 0.5, 0.1}, 1.2}, {{1, 1, 0, 0}, 4},         {{1, 1, 1, 0}, 6},  {{1, 0, 0, 1}, 3},
+      {{1, -1, 0.5, -0.25}, 0},     {{1e-3, 0, 1e-3, 1}, 1.5}, {{0, 0, 1, -1}, 0}, {{1, 2, 3, 40}, 90},
+      {{0, 1, 0, 0}, 1.5},          {{0, 0, -2, 0}, 2.000001}, {{1, 1, 1, 1}, 99}, {{1, 1, 1, 1}, 0}};
+  for (unsigned seed = 0; seed < 2; ++seed)
+    for (const int range : {1, 1000})
+      for (const Method method : {Method::hull, Method::simplicial, Method::barycentric}) {
+        if (method == Method::barycentric && seed > 0) continue;
+        auto field = random_field<float, 4>({5, 4, 5, 4}, range, seed);
+        field.view.grid.axes[0].origin = -0.3;
+        field.view.grid.axes[2].spacing = -0.7;
+        field.view.grid.axes[3].coordinates = {0, 0.9, 2.1, 3};
+        FieldSliceOptions options;
+        options.method = method;
+        const auto surface = extracted(field, 0.5, options);
+        FieldSteps steps(unowned_field(field.view));
+        FieldSlicer<4> slicer(steps, 0.5, options);
+        for (const auto& plane : planes) {
+          const auto cut = slicer.slice(plane);
+          ASSERT_TRUE(cut) << cut.error().message;
+          expect_same_mesh(*cut, sliced(surface, plane));
+        }
+      }
+}
+
+// A series of moments shares the surface of each slab.
+TEST(FieldSlicer, many_moments_in_any_order) {
+  const auto field = random_field<float, 4>({5, 4, 5, 4}, 9, 3);
+  const auto surface = extracted(field, 0.5);
+  FieldSteps steps(unowned_field(field.view));
+  FieldSlicer<4> slicer(steps, 0.5);
+  for (const double time : {0., 0.25, 0.5, 0.75, 1., 1.5, 0.3, 0.4, 2.9, 3.}) {
+    const auto cut = slicer.slice(Hyperplane<4>::at(3, time));
+    ASSERT_TRUE(cut);
+    expect_same_mesh(*cut, sliced(surface, Hyperplane<4>::at(3, time)));
+  }
+}
+
+// The same places in both frames; lengths are true in one of them.
+TEST(Slice, frames_of_an_oblique_plane) {
+  const auto surface =
+      extracted(random_field<double, 4>({4, 4, 4, 4}, 9, 1), 0.5, {.precision = Precision::f64});
+  const Hyperplane<4> plane{{1, -2, 0.5, 1.5}, 0.3};
+  const auto true_lengths = sliced(surface, plane, {.precision = Precision::f64}),
+             in_axes = sliced(surface, plane, {.precision = Precision::f64, .frame = SliceFrame::axes});
+  const auto directions = slice_directions(plane, SliceFrame::orthonormal);
+  ASSERT_EQ(true_lengths.vertex_count(), in_axes.vertex_count());
+  ASSERT_GT(in_axes.vertex_count(), 0u);
+  double squared = 0;
+  for (const double component : plane.normal) squared += component * component;
+  for (std::size_t vertex = 0; vertex < in_axes.vertex_count(); ++vertex) {
+    std::vector<double> point;
+    for (std::size_t k = 0; k < 4; ++k) {
+      point.push_back(plane.offset / squared * plane.normal[k]);
+      for (std::size_t row = 0; row < 3; ++row)
+        point[k] += true_lengths.positions[vertex * 3 + row] * directions[row][k];
+    }
+    EXPECT_NEAR(point[0], in_axes.positions[vertex * 3], 1e-12); // axis 1 is the most aligned
+    EXPECT_NEAR(point[2], in_axes.positions[vertex * 3 + 1], 1e-12);
+    EXPECT_NEAR(point[3], in_axes.positions[vertex * 3 + 2], 1e-12);
+  }
+  EXPECT_EQ(measure(in_axes)->bad_facets, 0u);
+}
+
+// What vertices carry, from the field and from the mesh: an affine field stays affine, normals of the cut are
+// perpendicular to it, and both ways give the same.
+TEST(FieldSlicer, other_fields_and_normals) {
+  const auto ball = make_field<double, 4>(box_grid<4>(13, -1.5, 1.5), [](const auto& p) {
+    return 1.2 - std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
+  });
+  const auto affine = make_field<float, 4>(
+      box_grid<4>(13, -1.5, 1.5), [](const auto& p) { return 2 * p[0] - p[1] + 4 * p[2] + 8 * p[3]; });
+  FieldSteps steps(unowned_field(ball.view)), other(unowned_field(affine.view));
+  FieldSliceOptions options;
+  options.precision = Precision::f64;
+  options.with_normals = true;
+  options.others.push_back({"affine", &other});
+  FieldSlicer<4> slicer(steps, 0, options);
+  auto surface = extracted(ball, 0, options);
+  const NamedField named{"affine", unowned_field(affine.view)};
+  ASSERT_TRUE(add_point_data(surface, unowned_field(ball.view), 0, Inside::above, {&named, 1}, true));
+  for (const Hyperplane<4>& plane :
+       {Hyperplane<4>::at(3, 0.3), Hyperplane<4>::at(3, -0.5), Hyperplane<4>::at(1, 0.3),
+        Hyperplane<4>::at(0, 0.25), Hyperplane<4>{{1, 1, -1, 1}, 0.4}, Hyperplane<4>{{0.1, 0, 0, -1}, 0.4}}) {
+    const auto cut = slicer.slice(plane);
+    ASSERT_TRUE(cut) << cut.error().message;
+    const auto of_mesh = sliced(surface, plane, {.precision = Precision::f64});
+    expect_same_mesh(*cut, of_mesh);
+    ASSERT_EQ(cut->attributes.size(), 2u);
+    const auto& normals = std::get<std::vector<double>>(cut->attributes[0].values);
+    const auto& values = std::get<std::vector<double>>(cut->attributes[1].values);
+    ASSERT_EQ(normals.size(), cut->vertex_count() * 3);
+
+    // The same data at the same places, whichever way.
+    std::multiset<std::vector<double>> from_field, from_mesh;
+    for (const auto& [mesh, set] : {std::pair{&*cut, &from_field}, std::pair{&of_mesh, &from_mesh}})
+      for (std::size_t vertex = 0; vertex < mesh->vertex_count(); ++vertex) {
+        std::vector<double> row{std::get<std::vector<double>>(mesh->attributes[1].values)[vertex]};
+        for (std::size_t k = 0; k < 3; ++k) {
+          row.push_back(mesh->positions[vertex * 3 + k]);
+          const double component = std::get<std::vector<double>>(mesh->attributes[0].values)[vertex * 3 + k];
+          row.push_back(std::round(component * 1e9)); // at a stored step rounded once less
+        }
+        set->insert(row);
+      }
+    EXPECT_TRUE(from_field == from_mesh);
+
+    // The cut is a ball around the foot of the origin, and the field is affine on it.
+    const auto directions = slice_directions(plane, SliceFrame::orthonormal);
+    double squared = 0;
+    for (const double component : plane.normal) squared += component * component;
+    for (std::size_t vertex = 0; vertex < cut->vertex_count(); ++vertex) {
+      double expected = 0, along = 0, length = 0;
+      constexpr double factors[] = {2, -1, 4, 8};
+      for (std::size_t k = 0; k < 4; ++k) {
+        double coordinate = plane.offset / squared * plane.normal[k];
+        for (std::size_t row = 0; row < 3; ++row)
+          coordinate += cut->positions[vertex * 3 + row] * directions[row][k];
+        expected += factors[k] * coordinate;
+      }
+      EXPECT_NEAR(values[vertex], expected, 1e-5);
+      for (std::size_t row = 0; row < 3; ++row) {
+        along += normals[vertex * 3 + row] * cut->positions[vertex * 3 + row];
+        length = std::hypot(length, cut->positions[vertex * 3 + row]);
+      }
+      EXPECT_GT(along / length, 0.995); // outward
+    }
   }
 }
 

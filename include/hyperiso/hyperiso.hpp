@@ -7,6 +7,7 @@
 #include "hyperiso/extract.hpp"
 #include "hyperiso/field.hpp"
 #include "hyperiso/grid.hpp"
+#include "hyperiso/interpolate.hpp"
 #include "hyperiso/interval.hpp"
 #include "hyperiso/io.hpp"
 #include "hyperiso/measure.hpp"

@@ -24,6 +24,10 @@ struct Attribute {
       values; ///< (vertices or simplices) x components
 };
 
+/// The name of the vertex attribute, of D components, that holds unit normals of a surface in R^D. Whatever
+/// moves or cuts a mesh turns it along; other attributes are numbers that stay as they are.
+inline constexpr const char* normal_attribute = "normal";
+
 /// A welded, oriented mesh of K-simplices in R^D, its dimensions known at run time.
 struct Mesh {
   Mesh(int dimension_, int simplex_dimension_)
@@ -64,7 +68,8 @@ template <int D>
 using VolumeMesh = SimplexMesh<D, D>;
 
 /// Moves the vertices by an affine map and turns the simplices where the map reflects, so that normals still
-/// point from + to -. `grid_axes` move along. Requires that `map` has the mesh's dimension.
+/// point from + to -. `grid_axes` and the attribute `normal` move along. Requires that `map` has the mesh's
+/// dimension.
 void transform(Mesh& mesh, const Affine& map);
 
 } // namespace hyperiso

@@ -3,9 +3,12 @@
 /// Cuts of isosurfaces by hyperplanes: the surface at a moment, or on any plane.
 
 #include "hyperiso/extract.hpp"
+#include "hyperiso/step_source.hpp"
 
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <string>
 #include <vector>
 
 namespace hyperiso {
@@ -25,17 +28,32 @@ struct Hyperplane {
   }
 };
 
+/// Coordinates on a plane. They differ for oblique planes only: on a plane across one axis both are those of
+/// the other axes in their order.
+enum class SliceFrame {
+  orthonormal, ///< along an orthonormal basis: lengths and angles are true
+  axes,        ///< those of the axes without the one most aligned with the normal: places are true
+};
+
+/// The directions in space along which the coordinates of a cut grow: row k is that of coordinate k, D
+/// numbers. With `orthonormal` they are the basis of the plane, and the point with coordinates u is offset /
+/// |normal|^2
+/// * normal + sum of u_k * row k.
+template <int D>
+std::vector<std::vector<double>> slice_directions(const Hyperplane<D>& plane, SliceFrame frame);
+
 struct SliceOptions {
   Precision precision = Precision::f32; ///< of the positions; they are computed in double in any case
   bool welded =
       true; ///< false: the pieces of every simplex have vertices of their own; several times as fast
+  SliceFrame frame = SliceFrame::orthonormal;
 };
 
 /// Cuts a mesh of K-simplices in R^D (K = D-1: a surface, K = D: a volume) by a hyperplane into a mesh of
 /// (K-1)-simplices in R^(D-1), welded and oriented as `mesh` is.
 ///
-/// Coordinates: for a plane across one axis, those of the other axes in their order; for an oblique plane,
-/// those along an orthonormal basis of it: the axes without the one most aligned with the normal, made
+/// Coordinates: for a plane across one axis, those of the other axes in their order; for an oblique plane, by
+/// SliceFrame; the orthonormal basis is that of the axes without the one most aligned with the normal, made
 /// orthonormal in their order. Normals of a surface point from + to -; simplices of a volume whose simplices
 /// are oriented positively are oriented positively.
 ///
@@ -47,7 +65,9 @@ struct SliceOptions {
 /// for simplex, with its own grid edges, wherever a cell without NaN touches them. That needs `mesh.edges`;
 /// without them such a plane is cut like any other.
 ///
-/// Attributes come along: those of vertices interpolated along the edges, those of simplices copied.
+/// Attributes come along: those of vertices interpolated along the edges, those of simplices copied. Of the
+/// attribute `normal` the part in the plane is left, in the coordinates of the cut and of length 1: it is the
+/// normal of the cut.
 ///
 /// D = 3, 4 for surfaces and for volumes. As a set the cut depends on the order of the vertices, not of the
 /// simplices, and is the same for a mesh and for any slab of it that holds the plane. A plane that misses the
@@ -80,14 +100,54 @@ class SliceIndex {
   std::vector<Group> groups_;        // of as many simplices each, in that order
 };
 
-/// The same cut straight from the field, without the D-mesh: of the samples around the plane only, if it lies
-/// across an axis. At a coordinate that holds samples it is the extraction of these samples, also where NaN
-/// surrounds them. Types: all of SampleType; D = 3, 4.
-/// Errors: those of `extract` and of the other `slice`; outside_domain if a plane across an axis misses the
-/// field.
+/// How a field is cut.
+struct FieldSliceOptions : ExtractOptions {
+  SliceFrame frame = SliceFrame::orthonormal;
+  bool with_normals = false; ///< the attribute `normal`, of the gradient (see interpolate.hpp)
+  struct Other {
+    std::string name;
+    StepSource* source; ///< a field of the same grid; must outlive the slicer
+  };
+  std::vector<Other> others = {}; ///< further fields, interpolated at the surface: attributes of their names
+};
+
+/// Cuts of the isosurface of a field, without the D-mesh: `slice(extract(field), plane)` as a set of vertices
+/// and simplices, with the same attributes.
+///
+/// Of the last axis (steps, if it is time) it reads what the plane meets: of a plane across it, the samples
+/// around it; of any other plane, slab after slab of two samples each; for normals one more on both sides;
+/// the pieces of neighbouring slabs are welded by the identity of the mesh edges that their vertices lie on.
+/// A plane that holds samples gives the extraction of these samples, also where NaN surrounds them. (With
+/// Method::barycentric, whose meshes have no grid edges, other planes take the whole field.)
+/// Cuts across the last axis between the same two samples share one surface, indexed: so a series of many
+/// moments in their order extracts every slab once.
+/// Memory: the samples of a slab, its part of the surface and the cut; nothing else stays.
+template <int D>
+class FieldSlicer {
+ public:
+  /// `source` has D axes and must outlive the slicer.
+  FieldSlicer(StepSource& source, double isovalue, FieldSliceOptions options = {});
+  ~FieldSlicer();
+  FieldSlicer(FieldSlicer&&) noexcept;
+
+  /// Errors: those of `extract`, `add_point_data`, the source and the other `slice`; outside_domain if a
+  /// plane across an axis misses the field. An oblique plane that misses it gives an empty mesh.
+  Result<SimplexMesh<D - 1>> slice(const Hyperplane<D>& plane);
+
+ private:
+  class Work;
+  std::unique_ptr<Work> work_;
+};
+
+/// The same for one cut of a field in memory. Types: all of SampleType; D = 3, 4.
 template <class T, int D>
 Result<SimplexMesh<D - 1>> slice(const FieldView<const T, D>& field, double isovalue,
-                                 const Hyperplane<D>& plane, const ExtractOptions& options = {});
+                                 const Hyperplane<D>& plane, const ExtractOptions& options = {}) {
+  FieldSteps steps(unowned_field(field));
+  FieldSliceOptions how;
+  static_cast<ExtractOptions&>(how) = options;
+  return FieldSlicer<D>(steps, isovalue, std::move(how)).slice(plane);
+}
 
 struct SampleRange {
   std::int64_t begin, end;

@@ -20,6 +20,18 @@ class StepSource {
   virtual Result<Field> read(std::int64_t begin, std::int64_t end) = 0;
 };
 
+/// A view as a field: copies nothing, so the samples must outlive it.
+template <class T, int D>
+Field unowned_field(const FieldView<const T, D>& view) {
+  Field field;
+  field.info.type = sample_type_of<T>();
+  field.info.axes.assign(view.grid.axes.begin(), view.grid.axes.end());
+  field.samples = std::shared_ptr<const std::byte>(std::shared_ptr<const void>(),
+                                                   reinterpret_cast<const std::byte*>(view.samples));
+  field.strides.assign(view.strides.begin(), view.strides.end());
+  return field;
+}
+
 /// A field in memory, step by step; copies nothing.
 class FieldSteps final : public StepSource {
  public:

@@ -44,6 +44,47 @@ void move_grid(Mesh& mesh, const Affine& map) {
   }
 }
 
+// Matrix of the cofactors of `linear`, of D rows of D: the inverse transposed, times the determinant. Normals
+// turn by it, up to their length.
+std::vector<double> cofactors(const std::vector<double>& linear, std::size_t D) {
+  std::vector<double> result(D * D);
+  for (std::size_t row = 0; row < D; ++row)
+    for (std::size_t column = 0; column < D; ++column) {
+      std::vector<double> minor;
+      for (std::size_t r = 0; r < D; ++r)
+        for (std::size_t c = 0; c < D; ++c)
+          if (r != row && c != column) minor.push_back(linear[r * D + c]);
+      result[row * D + column] =
+          ((row + column) % 2 == 0 ? 1 : -1) * determinant(minor, static_cast<int>(D) - 1);
+    }
+  return result;
+}
+
+void turn_normals(Mesh& mesh, const Affine& map) {
+  const auto D = static_cast<std::size_t>(mesh.dimension);
+  const double sign = determinant(map.linear, mesh.dimension) < 0 ? -1 : 1;
+  const std::vector<double> matrix = cofactors(map.linear, D);
+  const auto turn = [&](auto& values) {
+    using Value = typename std::decay_t<decltype(values)>::value_type;
+    std::vector<double> image(D);
+    for (std::size_t start = 0; start + D <= values.size(); start += D) {
+      double length = 0;
+      for (std::size_t row = 0; row < D; ++row) {
+        image[row] = 0;
+        for (std::size_t column = 0; column < D; ++column)
+          image[row] += sign * matrix[row * D + column] * static_cast<double>(values[start + column]);
+        length = std::hypot(length, image[row]);
+      }
+      for (std::size_t row = 0; row < D; ++row)
+        values[start + row] = static_cast<Value>(length > 0 ? image[row] / length : 0);
+    }
+  };
+  for (Attribute& attribute : mesh.attributes)
+    if (attribute.location == Attribute::Location::vertex && attribute.name == normal_attribute &&
+        attribute.components == mesh.dimension)
+      std::visit(turn, attribute.values);
+}
+
 } // namespace
 
 void transform(Mesh& mesh, const Affine& map) {
@@ -61,6 +102,7 @@ void transform(Mesh& mesh, const Affine& map) {
     }
   });
   move_grid(mesh, map);
+  turn_normals(mesh, map);
   if (determinant(map.linear, mesh.dimension) > 0) return;
   const auto corners = static_cast<std::size_t>(mesh.simplex_dimension + 1);
   mesh.simplices.visit([&](auto simplices) {

@@ -5,10 +5,40 @@
 
 #include "hyperiso/mesh.hpp"
 
+#include <array>
+#include <cmath>
 #include <variant>
 #include <vector>
 
 namespace hyperiso {
+
+// A normal of the mesh as one of the cut, in the plane: of length 1, 0 where none is left. `directions` are
+// those of the coordinates on the plane.
+template <std::size_t D>
+void turn_normals(Mesh& cut, const std::array<std::array<double, D>, D - 1>& directions) {
+  const auto turned = [&]<class Value>(const std::vector<Value>& normals) {
+    std::vector<Value> result;
+    for (std::size_t start = 0; start + D <= normals.size(); start += D) {
+      std::array<double, D - 1> normal{};
+      double length = 0;
+      for (std::size_t row = 0; row < D - 1; ++row) {
+        for (std::size_t k = 0; k < D; ++k)
+          normal[row] += directions[row][k] * static_cast<double>(normals[start + k]);
+        length = std::hypot(length, normal[row]);
+      }
+      for (const double component : normal)
+        result.push_back(static_cast<Value>(length > 0 ? component / length : 0));
+    }
+    return result;
+  };
+  for (Attribute& attribute : cut.attributes) {
+    if (attribute.location != Attribute::Location::vertex || attribute.name != normal_attribute ||
+        attribute.components != static_cast<int>(D))
+      continue;
+    attribute.components = static_cast<int>(D) - 1;
+    std::visit([&](auto& values) { values = turned(values); }, attribute.values);
+  }
+}
 
 // Vertex i of the cut lies at weights[i] along vertices[i]; simplex i lies in simplex sources[i] of the mesh.
 template <class Index>

@@ -14,15 +14,15 @@ namespace hyperiso {
 template <int D>
 class CutPlane {
  public:
-  CutPlane(const Mesh& mesh, const Hyperplane<D>& plane)
-      : plane_(plane), across_(axis_across(plane)), frame_(plane) {
+  CutPlane(const Mesh& mesh, const Hyperplane<D>& plane, SliceFrame frame)
+      : plane_(plane), across_(axis_across(plane)), frame_(plane, frame) {
     if (!across_) return;
     // x[axis] = value; so that rounding keeps to one side what lies on one side.
     plane_ = Hyperplane<D>::at(*across_, plane.offset / plane.normal[*across_]);
     if (!mesh.grid_axes.empty() && !mesh.positions.wide())
       plane_.offset =
           among_rounded_samples(mesh.grid_axes[static_cast<std::size_t>(*across_)], plane_.offset);
-    frame_ = Frame<D>(plane_);
+    frame_ = Frame<D>(plane_, frame);
   }
 
   // How far a point lies beyond the plane.
@@ -37,6 +37,7 @@ class CutPlane {
     return across_ ? without(point, *across_) : frame_.coordinates(point);
   }
   bool positive() const { return frame_.positive; }
+  const auto& directions() const { return frame_.directions; }
 
   bool meets(const std::array<double, D>& low, const std::array<double, D>& high) const {
     double least = -plane_.offset, most = -plane_.offset;
@@ -112,10 +113,10 @@ struct CutCorners {
 };
 
 // Cuts the simplices that `for_each_simplex` calls its argument with. `number` gives the vertex on an edge.
-template <int D, int K, class Real, class Index, class ForEachSimplex, class Number>
+template <int D, int K, class Real, class Index, class ForEachSimplex, class Number, class CutIndex>
 void cut_simplices(std::span<const Real> positions, std::span<const Index> simplices,
                    const CutPlane<D>& plane, const ForEachSimplex& for_each_simplex, const Number& number,
-                   CutCorners<Index>& cut) {
+                   CutCorners<CutIndex>& cut) {
   const auto& shapes = cut_shapes<K>();
   for_each_simplex([&](std::uint64_t simplex) {
     const Index* corners = &simplices[simplex * (K + 1)];
@@ -128,7 +129,7 @@ void cut_simplices(std::span<const Real> positions, std::span<const Index> simpl
     unsigned pattern = 0;
     for (unsigned place = 0; place <= K; ++place) pattern |= (beyond >> sorted.from[place] & 1) << place;
     const CutShape<K>& shape = shapes[pattern];
-    std::array<Index, CutShape<K>::most_edges> vertices;
+    std::array<CutIndex, CutShape<K>::most_edges> vertices;
     for (std::size_t edge = 0; edge < shape.edge_count; ++edge)
       vertices[edge] =
           number({sorted.corners[shape.edges[edge].lower], sorted.corners[shape.edges[edge].upper]});
@@ -193,7 +194,7 @@ Array<double> place_vertices(std::span<const Real> positions, const Array<MeshEd
 template <int D, int K, class ForEachSimplex>
 SimplexMesh<D - 1, K - 1> cut_inside(const SimplexMesh<D, K>& mesh, const Hyperplane<D>& hyperplane,
                                      const SliceOptions& options, const ForEachSimplex& for_each_simplex) {
-  const CutPlane<D> plane(mesh, hyperplane);
+  const CutPlane<D> plane(mesh, hyperplane, options.frame);
   SimplexMesh<D - 1, K - 1> result;
   mesh.positions.visit([&](auto positions) {
     mesh.simplices.visit([&](auto simplices) {
@@ -205,6 +206,7 @@ SimplexMesh<D - 1, K - 1> cut_inside(const SimplexMesh<D, K>& mesh, const Hyperp
       result.simplices.reset(cut.corners.size(), sizeof(Index) > sizeof(IndexArray::NarrowType));
       result.simplices.visit([&](auto corners) { std::ranges::copy(cut.corners, corners.begin()); });
       carry_attributes<Index>(mesh, cut.vertices, weights, cut.sources, result);
+      turn_normals<D>(result, plane.directions());
     });
   });
   return result;

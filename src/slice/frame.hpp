@@ -21,34 +21,40 @@ std::optional<int> axis_across(const Hyperplane<D>& plane) {
   return across;
 }
 
-// An orthonormal basis of the plane, and whether the unit normal followed by it is positively oriented.
+// Coordinates on the plane, and whether the unit normal followed by their directions is positively oriented.
 template <int D>
 struct Frame {
-  std::array<std::array<double, D>, D - 1> basis{};
+  // Row k takes a point to its coordinate k; direction k is that of the plane along which it grows by one
+  // while the others stay.
+  std::array<std::array<double, D>, D - 1> rows{}, directions{};
   bool positive = true;
 
-  explicit Frame(const Hyperplane<D>& plane) {
+  Frame(const Hyperplane<D>& plane, SliceFrame kind) {
     const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
     const auto across = std::ranges::max_element(plane.normal, larger) - plane.normal.begin();
     const std::array<double, D> normal = unit(plane.normal);
-    std::vector<double> rows(normal.begin(), normal.end());
+    std::vector<double> oriented(normal.begin(), normal.end());
     for (int axis = 0, row = 0; axis < D; ++axis) {
       if (axis == across) continue;
-      std::array<double, D> direction{};
-      direction[axis] = 1;
-      remove(direction, normal);
-      for (int done = 0; done < row; ++done) remove(direction, basis[done]);
-      basis[row] = unit(direction);
-      rows.insert(rows.end(), basis[row].begin(), basis[row].end());
+      std::array<double, D>&direction = directions[row], &along = rows[row];
+      along[axis] = direction[axis] = 1;
+      if (kind == SliceFrame::axes) {
+        direction[across] = -normal[axis] / normal[across];
+      } else {
+        remove(direction, normal);
+        for (int done = 0; done < row; ++done) remove(direction, directions[done]);
+        along = direction = unit(direction);
+      }
+      oriented.insert(oriented.end(), direction.begin(), direction.end());
       ++row;
     }
-    positive = determinant(rows, D) > 0;
+    positive = determinant(oriented, D) > 0;
   }
 
   std::array<double, D - 1> coordinates(const std::array<double, D>& point) const {
     std::array<double, D - 1> result{};
     for (int row = 0; row < D - 1; ++row)
-      for (int k = 0; k < D; ++k) result[row] += basis[row][k] * point[k];
+      for (int k = 0; k < D; ++k) result[row] += rows[row][k] * point[k];
     return result;
   }
 

@@ -2,8 +2,8 @@
 
 #include "hyperiso/slice.hpp"
 
-#include "core/instantiate.hpp"
 #include "core/text.hpp"
+#include "slice/check_plane.hpp"
 #include "slice/cut.hpp"
 #include "slice/trace.hpp"
 
@@ -14,18 +14,6 @@
 
 namespace hyperiso {
 namespace {
-
-template <int D>
-Status check_plane(const Hyperplane<D>& plane) {
-  bool finite = std::isfinite(plane.offset), zero = true;
-  for (const double component : plane.normal) {
-    finite &= std::isfinite(component);
-    zero &= component == 0;
-  }
-  if (!finite || zero)
-    return Error{Code::invalid_argument, "a hyperplane needs a normal that is not 0, and finite numbers"};
-  return {};
-}
 
 // The layer of samples of the grid that a surface came from, if the plane holds one.
 template <int D>
@@ -138,7 +126,7 @@ template <int D, int K>
 Result<SimplexMesh<D - 1, K - 1>> SliceIndex<D, K>::slice(const SimplexMesh<D, K>& mesh,
                                                           const Hyperplane<D>& plane,
                                                           const SliceOptions& options) const {
-  const CutPlane<D> cut_plane(mesh, plane);
+  const CutPlane<D> cut_plane(mesh, plane, options.frame);
   return slice_some(mesh, plane, options, [&](auto&& use) {
     for (std::size_t group = 0; group < groups_.size(); ++group) {
       if (!cut_plane.meets(groups_[group].low, groups_[group].high)) continue;
@@ -148,24 +136,15 @@ Result<SimplexMesh<D - 1, K - 1>> SliceIndex<D, K>::slice(const SimplexMesh<D, K
   });
 }
 
-template <class T, int D>
-Result<SimplexMesh<D - 1>> slice(const FieldView<const T, D>& field, double isovalue,
-                                 const Hyperplane<D>& plane, const ExtractOptions& options) {
-  if (const Status valid = check_plane(plane); !valid) return valid.error();
-  FieldView<const T, D> slab = field;
-  if (const std::optional<int> across = axis_across(plane)) {
-    const auto around = samples_around(field.grid.axes[*across], plane.offset / plane.normal[*across]);
-    if (!around) return around.error();
-    if (around->end - around->begin == 1)
-      return extract(field.at_index(*across, around->begin), isovalue, options);
-    slab = field.cropped(*across, around->begin, around->end);
-  }
-  ExtractOptions slab_options = options;
-  slab_options.keep_edges = true;
-  const auto mesh = extract(slab, isovalue, slab_options);
-  if (!mesh) return mesh.error();
-  return slice(*mesh, plane, {options.precision});
+template <int D>
+std::vector<std::vector<double>> slice_directions(const Hyperplane<D>& plane, SliceFrame frame) {
+  std::vector<std::vector<double>> rows;
+  for (const auto& direction : Frame<D>(plane, frame).directions)
+    rows.emplace_back(direction.begin(), direction.end());
+  return rows;
 }
+template std::vector<std::vector<double>> slice_directions(const Hyperplane<3>&, SliceFrame);
+template std::vector<std::vector<double>> slice_directions(const Hyperplane<4>&, SliceFrame);
 
 #define HYPERISO_INSTANTIATE_SLICE(D, K)                                                                     \
   template Result<SimplexMesh<D - 1, K - 1>> slice(const SimplexMesh<D, K>&, const Hyperplane<D>&,           \
@@ -175,11 +154,5 @@ HYPERISO_INSTANTIATE_SLICE(3, 2);
 HYPERISO_INSTANTIATE_SLICE(4, 3);
 HYPERISO_INSTANTIATE_SLICE(3, 3);
 HYPERISO_INSTANTIATE_SLICE(4, 4);
-
-#define HYPERISO_INSTANTIATE_FIELD_SLICE(T, D)                                                               \
-  template Result<SimplexMesh<D - 1>> slice(const FieldView<const T, D>&, double, const Hyperplane<D>&,      \
-                                            const ExtractOptions&);
-HYPERISO_FOR_EACH_SAMPLE_TYPE(HYPERISO_INSTANTIATE_FIELD_SLICE, 3)
-HYPERISO_FOR_EACH_SAMPLE_TYPE(HYPERISO_INSTANTIATE_FIELD_SLICE, 4)
 
 } // namespace hyperiso

@@ -5,6 +5,7 @@
 
 #include "hyperiso/slice.hpp"
 #include "slice/carry.hpp"
+#include "slice/frame.hpp"
 #include "slice/simplex_corners.hpp"
 #include "table/simplex_cut.hpp"
 
@@ -76,6 +77,7 @@ class Trace {
     Array<std::uint64_t> sources;
     for (const Face& face : faces_) sources.push_back(face.source);
     carry_attributes<std::uint64_t>(mesh_, ends, weights, sources, trace);
+    turn_normals<D>(trace, Frame<D>(Hyperplane<D>::at(layer_.axis, 0), options.frame).directions);
     return trace;
   }
 
