@@ -229,7 +229,8 @@ struct CellSamples {
       for (int axis = 0; axis < D; ++axis) index[axis] += corner >> axis & 1;
       const std::byte* sample = samples.at(index); // a row of one sample
       std::uint64_t word = 0;
-      if (kernels.inside(sample, 1, samples.test_in_layer(index[D - 1]), &word)) return;
+      std::uint8_t uniform = 0;
+      if (kernels.inside({sample, 1, 0, 1}, samples.test_in_layer(index[D - 1]), &word, &uniform)) return;
       values[corner] = visit_sample_type(samples.test.type, [&](auto value) {
         std::memcpy(&value, sample, sizeof value);
         return static_cast<double>(value);

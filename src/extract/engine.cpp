@@ -63,13 +63,14 @@ class Engine {
   struct Worker {
     Engine* engine;
     Cells<D> cells;
+    ScanMemory memory;
     MaskWindow window;              // if units are not linked
     std::vector<Pending> pending;   // the last is that of the current unit
     std::vector<VertexBatch> spare; // empty, to be used again
 
     // What it found. The memory is used again.
     void forget() {
-      cells.runs.clear();
+      cells.run_count = 0;
       cells.restarts.clear();
       cells.code_count = 0;
       window.last_layer = -1;
@@ -146,6 +147,7 @@ class Engine {
                    &numbers_,
                    plan_.units[unit],
                    &window,
+                   &worker.memory,
                    &worker.cells,
                    &worker.pending.back().batch,
                    &worker,
@@ -334,10 +336,7 @@ class SlabRun final : private Window<D>, private Engine<D, M>, public SlabEngine
 
   // The upper layer becomes the lower one.
   void forget_lower_layer() {
-    for (MaskWindow& masks : this->windows_) {
-      std::swap(masks.masks[0], masks.masks[1]);
-      std::swap(masks.uniform[0], masks.uniform[1]);
-    }
+    for (MaskWindow& masks : this->windows_) masks.swap_layers();
     const auto move_up = [](auto& numbers, int from, int to) {
       const std::size_t layer = numbers.size() / 3;
       std::copy_n(numbers.data() + static_cast<std::size_t>(from) * layer, layer,

@@ -19,11 +19,19 @@ struct RowPair {
   const std::byte *lower, *upper;
 };
 
-// Functions on one row of samples of one type. Rows become bit masks: bit x of word x / 64; the bits behind
-// the last sample are 0.
+// Some rows of `count` samples each, one after the other; the rows begin `bytes_apart`.
+struct SampleRows {
+  const std::byte* first;
+  std::int64_t rows, bytes_apart, count;
+  std::int64_t next = 0; // how far behind those lie that will be asked for next
+};
+
+// Functions on rows of samples of one type. Rows become bit masks: bit x of word x / 64; the bits behind the
+// last sample are 0.
 struct RowKernels {
-  // Which of `count` samples, one after the other, are inside. Returns whether one of them is NaN.
-  bool (*inside)(const std::byte* row, std::int64_t count, const InsideTest& test, std::uint64_t* words);
+  // Which samples are inside, row after row, and for each row 0 if none is, 255 if all are, 1 otherwise.
+  // Returns whether one of them is NaN.
+  bool (*inside)(const SampleRows& rows, const InsideTest& test, std::uint64_t* words, std::uint8_t* uniform);
   // Which of them are not NaN.
   void (*present)(const std::byte* row, std::int64_t count, std::uint64_t* words);
   // Copies samples that lie `stride` apart next to each other.
@@ -79,11 +87,48 @@ struct Unit {
 };
 
 // Masks of the rows of a unit and of those before it that its cells touch, in two layers: that of the last
-// even and that of the last odd index. Units on the same rows of successive layers share one.
-struct MaskWindow {
-  std::array<Array<std::uint64_t>, 2> masks;
-  std::array<Array<std::uint8_t>, 2> uniform; // of each row: 0 no sample is inside, 255 all, 1 neither
-  std::int64_t last_layer = -1;               // up to which layer they are filled
+// even and that of the last odd index. Units on the same rows of successive layers share one. Before and
+// behind the rows there is memory that vectors may read.
+class MaskWindow {
+ public:
+  void set_size(std::int64_t rows, std::int64_t words) {
+    if (rows == rows_ && words == words_) return;
+    rows_ = rows, words_ = words;
+    for (int parity = 0; parity < 2; ++parity) {
+      masks_[parity].reset(static_cast<std::size_t>(rows * words + 2 * mask_margin));
+      uniform_[parity].reset(static_cast<std::size_t>(rows + 2 * uniform_margin));
+    }
+  }
+  std::uint64_t* mask(std::size_t parity, std::int64_t row) {
+    return masks_[parity].data() + mask_margin + row * words_;
+  }
+  // Of each row: 0 no sample is inside, 255 all, 1 neither.
+  std::uint8_t* uniform(std::size_t parity, std::int64_t row) {
+    return uniform_[parity].data() + uniform_margin + row;
+  }
+  void swap_layers() {
+    std::swap(masks_[0], masks_[1]);
+    std::swap(uniform_[0], uniform_[1]);
+  }
+  std::int64_t last_layer = -1; // up to which layer they are filled
+
+ private:
+  static constexpr std::int64_t mask_margin = 16, uniform_margin = 64;
+  std::int64_t rows_ = 0, words_ = 0;
+  std::array<Array<std::uint64_t>, 2> masks_;
+  std::array<Array<std::uint8_t>, 2> uniform_;
+};
+
+// What a worker needs while it scans, kept from unit to unit.
+struct ScanMemory {
+  Array<std::uint64_t> edges_exist, cells_exist; // of a row
+  Array<std::uint64_t> crossed, active;          // of a strip of rows
+  Array<std::uint64_t> listed;
+  Array<std::uint32_t> listed_at;
+  Array<std::uint32_t> edge_upper, edge_group;
+  Array<double> lower_values, upper_values;
+  Buffer groups, starts;
+  Buffer gathered;
 };
 
 // Numbers of the vertices: for each row and direction, how many of its plane come before them; for each
@@ -113,7 +158,8 @@ struct CellRun {
 template <int D>
 struct Cells {
   using Code = std::conditional_t<D <= 4, std::uint16_t, std::uint32_t>;
-  std::vector<CellRun> runs;
+  Array<CellRun> runs;
+  std::size_t run_count = 0;
   Array<Code> codes;
   std::size_t code_count = 0;
   std::vector<std::uint32_t> restarts; // where a run starts behind NaN: first its edges in the left column,
@@ -141,6 +187,7 @@ struct ScanJob {
 
   Unit unit;
   MaskWindow* window;
+  ScanMemory* memory;
   Cells<D>* cells;
   VertexBatch* batch;
   void* owner;

@@ -46,6 +46,7 @@ struct Lanes {
         return _mm512_cmp_epi32_mask(values, _mm512_set1_epi32(threshold), order);
     }
   }
+  // Which are NaN.
   static std::uint64_t missing(const T* samples) {
     if constexpr (std::is_same_v<T, float>) {
       const __m512 values = _mm512_loadu_ps(samples);
@@ -54,6 +55,13 @@ struct Lanes {
       const __m512d values = _mm512_loadu_pd(samples);
       return _mm512_cmp_pd_mask(values, values, _CMP_UNORD_Q);
     }
+  }
+  // In which lanes one of two vectors is NaN: half the comparisons for those who only ask whether any is.
+  static std::uint64_t either_missing(const T* a, const T* b) {
+    if constexpr (std::is_same_v<T, float>)
+      return _mm512_cmp_ps_mask(_mm512_loadu_ps(a), _mm512_loadu_ps(b), _CMP_UNORD_Q);
+    else
+      return _mm512_cmp_pd_mask(_mm512_loadu_pd(a), _mm512_loadu_pd(b), _CMP_UNORD_Q);
   }
 };
 
@@ -105,6 +113,14 @@ struct Lanes {
       return static_cast<std::uint32_t>(_mm256_movemask_pd(_mm256_cmp_pd(values, values, _CMP_UNORD_Q)));
     }
   }
+  static std::uint64_t either_missing(const T* a, const T* b) {
+    if constexpr (std::is_same_v<T, float>)
+      return static_cast<std::uint32_t>(
+          _mm256_movemask_ps(_mm256_cmp_ps(_mm256_loadu_ps(a), _mm256_loadu_ps(b), _CMP_UNORD_Q)));
+    else
+      return static_cast<std::uint32_t>(
+          _mm256_movemask_pd(_mm256_cmp_pd(_mm256_loadu_pd(a), _mm256_loadu_pd(b), _CMP_UNORD_Q)));
+  }
 };
 
 #elif defined(__SSE2__)
@@ -154,6 +170,12 @@ struct Lanes {
       return static_cast<std::uint32_t>(_mm_movemask_pd(_mm_cmpunord_pd(values, values)));
     }
   }
+  static std::uint64_t either_missing(const T* a, const T* b) {
+    if constexpr (std::is_same_v<T, float>)
+      return static_cast<std::uint32_t>(_mm_movemask_ps(_mm_cmpunord_ps(_mm_loadu_ps(a), _mm_loadu_ps(b))));
+    else
+      return static_cast<std::uint32_t>(_mm_movemask_pd(_mm_cmpunord_pd(_mm_loadu_pd(a), _mm_loadu_pd(b))));
+  }
 };
 
 #else
@@ -173,6 +195,7 @@ struct Lanes {
     for (int i = 0; i < count; ++i) bits |= static_cast<std::uint64_t>(is_missing(samples[i])) << i;
     return bits;
   }
+  static std::uint64_t either_missing(const T* a, const T* b) { return missing(a) | missing(b); }
 };
 
 #endif
@@ -180,14 +203,15 @@ struct Lanes {
 template <class T>
 constexpr bool can_miss = std::is_floating_point_v<T>;
 
-// The masks of 64 samples; `missing` collects those that are NaN.
+// The masks of 64 samples; `missing` collects which lanes hold NaN.
 template <class T, bool Above>
 std::uint64_t inside_word(const T* samples, T threshold, std::uint64_t& missing) {
   std::uint64_t word = 0;
-  for (int lane = 0; lane < 64; lane += Lanes<T>::count) {
+  for (int lane = 0; lane < 64; lane += Lanes<T>::count)
     word |= Lanes<T>::template inside<Above>(samples + lane, threshold) << lane;
-    if constexpr (can_miss<T>) missing |= Lanes<T>::missing(samples + lane);
-  }
+  if constexpr (can_miss<T>)
+    for (int lane = 0; lane < 64; lane += 2 * Lanes<T>::count)
+      missing |= Lanes<T>::either_missing(samples + lane, samples + lane + Lanes<T>::count);
   return word;
 }
 
@@ -202,24 +226,42 @@ struct LastSamples {
   std::int64_t word, rest;
 };
 
+// Fetches the 64 samples `next` bytes behind, into the second-level cache.
+template <class T>
+void prefetch_word(const T* samples, std::int64_t next) {
+  const auto* line = reinterpret_cast<const std::byte*>(samples) + next;
+  for (std::size_t i = 0; i < 64 * sizeof(T); i += 64) __builtin_prefetch(line + i, 0, 2);
+}
+
 template <class T, bool Above>
-bool inside_words(const T* row, std::int64_t count, T threshold, std::uint64_t* words) {
+bool inside_rows(const SampleRows& rows, T threshold, std::uint64_t* words, std::uint8_t* uniform) {
   std::uint64_t missing = 0;
-  for (std::int64_t word = 0; word < count / 64; ++word)
-    words[word] = inside_word<T, Above>(row + 64 * word, threshold, missing);
-  if (count % 64 != 0) {
-    const LastSamples<T> last(row, count);
-    words[last.word] = inside_word<T, Above>(last.samples, threshold, missing) & last.bits();
+  const std::byte* row = rows.first;
+  for (std::int64_t r = 0; r < rows.rows; ++r, row += rows.bytes_apart) {
+    const auto* samples = reinterpret_cast<const T*>(row);
+    std::uint64_t any = 0, all = ~std::uint64_t{0};
+    for (std::int64_t word = 0; word < rows.count / 64; ++word) {
+      prefetch_word(samples + 64 * word, rows.next);
+      const std::uint64_t inside = inside_word<T, Above>(samples + 64 * word, threshold, missing);
+      any |= inside, all &= inside;
+      *words++ = inside;
+    }
+    if (rows.count % 64 != 0) {
+      const LastSamples<T> last(samples, rows.count);
+      const std::uint64_t inside = inside_word<T, Above>(last.samples, threshold, missing) & last.bits();
+      any |= inside, all &= inside | ~last.bits();
+      *words++ = inside;
+    }
+    uniform[r] = any == 0 ? 0 : ~all == 0 ? 255 : 1;
   }
   return missing != 0;
 }
 
 template <class T>
-bool inside(const std::byte* row, std::int64_t count, const InsideTest& test, std::uint64_t* words) {
-  const auto* samples = reinterpret_cast<const T*>(row);
+bool inside(const SampleRows& rows, const InsideTest& test, std::uint64_t* words, std::uint8_t* uniform) {
   const auto threshold = test.threshold_as<T>();
-  return test.above ? inside_words<T, true>(samples, count, threshold, words)
-                    : inside_words<T, false>(samples, count, threshold, words);
+  return test.above ? inside_rows<T, true>(rows, threshold, words, uniform)
+                    : inside_rows<T, false>(rows, threshold, words, uniform);
 }
 
 template <class T>

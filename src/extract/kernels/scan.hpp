@@ -1,99 +1,47 @@
 #pragma once
 // Phase 1: rows of samples -> crossed edges and codes of active cells.
+//
+// The rows are worked on in strips, some along axis 1 at a time: first the masks of all, then the crossed
+// edges and the active cells of all, as words of bits, then what is in the words that are not 0. So loops are
+// long, and nothing is read right after it was written in other pieces, which would make the processor wait.
 
+#include "extract/kernels/codes.hpp"
 #include "extract/kernels/vertices.hpp"
 
 namespace hyperiso {
 namespace {
-
-#if defined(HYPERISO_AVX512)
-template <int Shift>
-__m512i exchange(__m512i word, std::uint64_t mask) {
-  const __m512i difference = _mm512_and_si512(_mm512_xor_si512(word, _mm512_srli_epi64(word, Shift)),
-                                              _mm512_set1_epi64(static_cast<long long>(mask)));
-  return _mm512_xor_si512(word, _mm512_xor_si512(difference, _mm512_slli_epi64(difference, Shift)));
-}
-#else
-// Exchanges the bits in `mask` with those `Shift` above them.
-template <int Shift>
-std::uint64_t exchange(std::uint64_t word, std::uint64_t mask) {
-  const std::uint64_t difference = (word ^ (word >> Shift)) & mask;
-  return word ^ difference ^ (difference << Shift);
-}
-// Exchanges the bits above `Shift` of each word with those in `mask` of the one `Block` behind it.
-template <int Block, int Shift>
-void exchange_bytes(std::array<std::uint64_t, 8>& m, std::uint64_t mask) {
-  for (unsigned r = 0; r < 8; ++r) {
-    if (r & Block) continue;
-    const std::uint64_t difference = ((m[r] >> Shift) ^ m[r | Block]) & mask;
-    m[r] ^= difference << Shift;
-    m[r | Block] ^= difference;
-  }
-}
-#endif
-
-// Row r of `rows` holds bit r of 64 columns; makes the columns: bit r of byte c is bit c of row r.
-inline void transpose(const std::array<std::uint64_t, 8>& rows, std::uint8_t* columns) {
-  // First whole bytes: byte b of row r becomes byte r of word b. Then the same with the bits of each word, by
-  // exchanging ever larger blocks on both sides of the diagonal.
-#if defined(HYPERISO_AVX512)
-  alignas(64) static constexpr auto byte_order = [] {
-    std::array<std::uint8_t, 64> order{};
-    for (unsigned i = 0; i < 64; ++i) order[i] = static_cast<std::uint8_t>(i % 8 * 8 + i / 8);
-    return order;
-  }();
-  const __m512i m = _mm512_setr_epi64(static_cast<long long>(rows[0]), static_cast<long long>(rows[1]),
-                                      static_cast<long long>(rows[2]), static_cast<long long>(rows[3]),
-                                      static_cast<long long>(rows[4]), static_cast<long long>(rows[5]),
-                                      static_cast<long long>(rows[6]), static_cast<long long>(rows[7]));
-  __m512i words = _mm512_permutexvar_epi8(_mm512_load_si512(byte_order.data()), m);
-  words = exchange<7>(words, 0x00aa00aa00aa00aa);
-  words = exchange<14>(words, 0x0000cccc0000cccc);
-  words = exchange<28>(words, 0x00000000f0f0f0f0);
-  _mm512_storeu_si512(columns, words);
-#else
-  std::array<std::uint64_t, 8> m = rows;
-  exchange_bytes<4, 32>(m, 0x00000000ffffffff);
-  exchange_bytes<2, 16>(m, 0x0000ffff0000ffff);
-  exchange_bytes<1, 8>(m, 0x00ff00ff00ff00ff);
-  for (std::uint64_t& word : m) {
-    word = exchange<7>(word, 0x00aa00aa00aa00aa);
-    word = exchange<14>(word, 0x0000cccc0000cccc);
-    word = exchange<28>(word, 0x00000000f0f0f0f0);
-  }
-  std::memcpy(columns, m.data(), sizeof m);
-#endif
-}
 
 template <int D, Method M>
 class Scan {
  public:
   explicit Scan(ScanJob<D>& job)
       : job_(job), samples_(*job.samples), grid_(*job.grid), unit_(job.unit), cells_(*job.cells),
-        window_(*job.window), numbers_(*job.numbers), words_(grid_.words), queue_(job) {
+        window_(*job.window), memory_(*job.memory), numbers_(*job.numbers), words_(grid_.words),
+        strip_rows_(std::clamp<std::int64_t>(strip_samples / grid_.dims[0], 1, most_strip_rows)),
+        queue_(job, memory_) {
     for (unsigned back = 0; back < places; ++back) {
       rows_back_[back] = grid_.rows_before_top(top ^ back);
       window_back_[back] = back & last_axis ? rows_back_[back] - grid_.layer_rows : rows_back_[back];
     }
-    if (samples_.strides[0] != 1)
-      gathered_.resize(static_cast<std::size_t>(grid_.dims[0]) * samples_.sample_size);
-    columns_.resize(static_cast<std::size_t>(64 * words_ + 64));
-    active_.resize(static_cast<std::size_t>(words_));
     const std::int64_t rest = grid_.dims[0] % 64;
     last_word_bits_ = rest == 0 ? ~std::uint64_t{0} : (std::uint64_t{1} << rest) - 1;
+    prepare_memory();
   }
 
   void run() {
-    if (!prepare_window()) return;
+    prepare_window();
     begin_result();
+    if (unit_.first_layer > 0 && window_.last_layer != unit_.first_layer - 1 &&
+        !fill_masks(unit_.first_layer - 1, unit_.first_row - halo(), unit_.end_row))
+      return;
     for (std::int64_t layer = unit_.first_layer; layer < unit_.end_layer; ++layer) {
       if (!fill_masks(layer, unit_.first_row - halo(), unit_.first_row)) return;
-      seek(layer, unit_.first_row);
-      for (std::int64_t row = unit_.first_row; row < unit_.end_row; ++row, advance()) {
-        if (!fill_mask()) return;
-        examine_row();
-        if (queue_.has_enough()) flush_queue();
-      }
+      const bool complete = for_each_strip(layer, unit_.first_row, unit_.end_row, [&](std::int64_t rows) {
+        if (!fill_strip(rows)) return false;
+        examine_strip(rows);
+        return true;
+      });
+      if (!complete) return;
       window_.last_layer = layer;
     }
     flush_queue();
@@ -102,30 +50,48 @@ class Scan {
 
  private:
   using Edges = CellEdges<D, M>;
-  using Column = std::conditional_t<D <= 4, std::uint8_t, std::uint16_t>;
   static constexpr unsigned places = Edges::column, top = Edges::top_place, last_axis = 1u << (D - 2);
+  // Neighbours along axis 1 lie in the same layer, but for images, whose layers are rows.
+  static constexpr unsigned axis_1 = D > 2 ? 1 : 0;
+
+  // So much fits the first-level cache, and so many rows a vector of bytes. While the masks of a strip are
+  // made, the next one is fetched, for it takes the memory longer than the masks, and less long than all the
+  // rest.
+  static constexpr std::int64_t strip_samples = 8192, most_strip_rows = 32;
 
   // Rows before the unit's that its cells touch, in the same layer.
   std::int64_t halo() const { return unit_.first_row > 0 ? grid_.halo : 0; }
 
-  bool prepare_window() {
-    const auto rows = static_cast<std::size_t>(unit_.end_row - unit_.first_row + grid_.halo);
-    for (int parity = 0; parity < 2; ++parity) {
-      if (window_.masks[parity].size() == rows * static_cast<std::size_t>(words_)) continue;
-      window_.masks[parity].reset(rows * static_cast<std::size_t>(words_));
-      window_.uniform[parity].reset(rows);
-    }
-    if (unit_.first_layer == 0 || window_.last_layer == unit_.first_layer - 1) return true;
-    return fill_masks(unit_.first_layer - 1, unit_.first_row - halo(), unit_.end_row);
+  void prepare_memory() {
+    const auto row_words = static_cast<std::size_t>(words_), rows = static_cast<std::size_t>(strip_rows_);
+    const std::size_t most = rows * row_words * Edges::directions + margin;
+    memory_.edges_exist.reset(row_words + margin);
+    memory_.cells_exist.reset(row_words + margin);
+    memory_.crossed.reset(most);
+    memory_.active.reset(rows * row_words + margin);
+    memory_.listed.reset(most);
+    memory_.listed_at.reset(most);
+    if (samples_.strides[0] != 1)
+      memory_.gathered.reset(static_cast<std::size_t>(grid_.dims[0]) * samples_.sample_size);
+    // Of a row's edges along axis 0 the first sample ends none; of its cells the last sample starts none.
+    std::uint64_t *edges = memory_.edges_exist.data(), *cells = memory_.cells_exist.data();
+    std::fill_n(edges, row_words, ~std::uint64_t{0});
+    std::fill_n(cells, row_words, ~std::uint64_t{0});
+    edges[row_words - 1] = last_word_bits_;
+    cells[row_words - 1] = last_word_bits_ >> 1;
+    edges[0] &= ~std::uint64_t{1};
+    std::fill_n(edges + row_words, margin, 0);
+    std::fill_n(cells + row_words, margin, 0);
   }
+  void prepare_window() { window_.set_size(unit_.end_row - unit_.first_row + grid_.halo, words_); }
   void begin_result() {
     UnitCells& result = *job_.result;
-    result.first_run = cells_.runs.size();
+    result.first_run = cells_.run_count;
     result.first_code = cells_.code_count;
     result.active_cells = result.simplices = result.vertices = 0;
   }
   void end_result() {
-    job_.result->end_run = cells_.runs.size();
+    job_.result->end_run = cells_.run_count;
     job_.result->active_cells = cells_.code_count - job_.result->first_code;
     job_.result->simplices = count_simplices();
   }
@@ -134,243 +100,309 @@ class Scan {
     if (job_.batch->count >= large_batch) job_.batch_is_large(job_.owner);
   }
 
-  // Goes to a row of a layer, given by its number in the layer.
-  void seek(std::int64_t layer, std::int64_t row_in_layer) {
+  // Strips ------------------------------------------------------------------------------------------------
+
+  // Calls use(count) for the strips of some rows of a layer, given by their numbers in it, until it returns
+  // false; the strip's first row is the current one. Returns whether it never did.
+  template <class Use>
+  bool for_each_strip(std::int64_t layer, std::int64_t first_row, std::int64_t end_row, Use&& use) {
+    index_ = {};
     index_[D - 1] = layer;
-    row_ = layer * grid_.layer_rows + row_in_layer;
-    std::int64_t rest = row_in_layer;
+    std::int64_t rest = first_row;
     for (int axis = 1; axis < D - 1; ++axis) {
       index_[axis] = rest % grid_.dims[axis];
       rest /= grid_.dims[axis];
     }
-    window_row_ = row_in_layer - unit_.first_row + grid_.halo;
-    find_row();
-  }
-  // What follows from the index.
-  void find_row() {
-    row_samples_ = samples_.at(index_);
-    existing_ = 0;
-    for (int axis = 1; axis < D; ++axis) existing_ |= static_cast<unsigned>(index_[axis] > 0) << (axis - 1);
-  }
-  void advance() {
-    ++row_, ++window_row_;
-    if constexpr (D > 2) {
-      row_samples_ += samples_.strides[1] * static_cast<std::int64_t>(samples_.sample_size);
-      existing_ |= 1;
-      if (++index_[1] < grid_.dims[1]) return;
-      index_[1] = 0;
-      for (int axis = 2; axis < D - 1 && ++index_[axis] == grid_.dims[axis]; ++axis) index_[axis] = 0;
-      find_row();
+    for (std::int64_t row = first_row, count; row < end_row; row += count) {
+      row_ = layer * grid_.layer_rows + row;
+      window_row_ = row - unit_.first_row + grid_.halo;
+      row_samples_ = samples_.at(index_);
+      count = std::min(strip_rows_, end_row - row);
+      if constexpr (D > 2) count = std::min(count, grid_.dims[1] - index_[1]);
+      count = std::min(count, numbers_.plane_rows - row_ % numbers_.plane_rows);
+      if (!use(count)) return false;
+      if constexpr (D > 2) {
+        index_[1] += count;
+        for (int axis = 1; axis < D - 2 && index_[axis] == grid_.dims[axis]; ++axis)
+          index_[axis] = 0, ++index_[axis + 1];
+      }
     }
+    return true;
   }
   std::size_t parity() const { return static_cast<std::size_t>(index_[D - 1] & 1); }
 
-  // The masks of the row `back` (a set like a place) before the current one along the axes in `back`.
-  std::size_t window_row_back(unsigned back) const {
-    return static_cast<std::size_t>(window_row_ - window_back_[back]);
-  }
-  const std::uint64_t* masks_back(unsigned back) const {
-    const auto& masks = window_.masks[back & last_axis ? parity() ^ 1 : parity()];
-    return masks.data() + window_row_back(back) * static_cast<std::size_t>(words_);
-  }
-  std::uint8_t uniform_back(unsigned back) const {
-    return window_.uniform[back & last_axis ? parity() ^ 1 : parity()][window_row_back(back)];
-  }
-
-  // Makes the mask of the current row. False: the field has NaN, against expectation.
-  bool fill_mask() {
-    std::uint64_t* mask = window_.masks[parity()].data() + window_row_ * words_;
-    const std::byte* row = row_samples_;
-    if (samples_.strides[0] != 1) {
-      job_.row_kernels->gather(row, samples_.strides[0], grid_.dims[0], gathered_.data());
-      row = gathered_.data();
-    }
+  // Makes the masks of a strip. False: the field has NaN, against expectation.
+  bool fill_strip(std::int64_t rows) {
+    std::uint64_t* masks = window_.mask(parity(), window_row_);
+    std::uint8_t* uniform = window_.uniform(parity(), window_row_);
     const InsideTest& test = samples_.test_in_layer(index_[D - 1]);
-    const bool missing = job_.row_kernels->inside(row, grid_.dims[0], test, mask);
-    if (test.never) std::fill_n(mask, words_, 0); // a level beyond the range of the type
-    std::uint64_t any = 0, all = ~std::uint64_t{0};
-    for (std::int64_t word = 0; word < words_ - 1; ++word) any |= mask[word], all &= mask[word];
-    any |= mask[words_ - 1], all &= mask[words_ - 1] | ~last_word_bits_;
-    window_.uniform[parity()][static_cast<std::size_t>(window_row_)] = any == 0 ? 0 : ~all == 0 ? 255 : 1;
+    const auto size = static_cast<std::int64_t>(samples_.sample_size);
+    const auto bytes_apart = D > 2 ? samples_.strides[1] * size : 0;
+    const auto& inside = job_.row_kernels->inside;
+    bool missing = false;
+    if (samples_.strides[0] == 1)
+      missing =
+          inside({row_samples_, rows, bytes_apart, grid_.dims[0], next_strip(rows)}, test, masks, uniform);
+    else
+      for (std::int64_t row = 0; row < rows; ++row) {
+        auto* gathered = static_cast<std::byte*>(memory_.gathered.data());
+        job_.row_kernels->gather(row_samples_ + row * bytes_apart, samples_.strides[0], grid_.dims[0],
+                                 gathered);
+        missing |= inside({gathered, 1, 0, grid_.dims[0]}, test, masks + row * words_, uniform + row);
+      }
+    if (test.never) { // a level beyond the range of the type
+      std::fill_n(masks, rows * words_, 0);
+      std::fill_n(uniform, rows, 0);
+    }
     job_.found_missing = missing && job_.present->all();
     return !job_.found_missing;
   }
+  // Where the next strip lies, in bytes from this one: rows of images follow each other as layers.
+  std::int64_t next_strip(std::int64_t rows) const {
+    const std::int64_t stride = samples_.strides[1] * static_cast<std::int64_t>(samples_.sample_size);
+    return stride * std::max<std::int64_t>(rows, D > 2 ? 1 : 4);
+  }
   // The same for some rows of a layer.
   bool fill_masks(std::int64_t layer, std::int64_t first_row, std::int64_t end_row) {
-    if (first_row == end_row) return true;
-    seek(layer, first_row);
-    for (std::int64_t row = first_row; row < end_row; ++row, advance())
-      if (!fill_mask()) return false;
-    return true;
+    return for_each_strip(layer, first_row, end_row, [&](std::int64_t rows) { return fill_strip(rows); });
   }
 
-  // Crossed edges that end in the current row, active cells of which it is the top row.
-  void examine_row() {
-    begin_row_numbers();
-    unsigned any = 0, all = 255;
+  // Crossed edges that end in the strip, active cells of which its rows are the top rows.
+  void examine_strip(std::int64_t rows) {
+    begin_plane();
+    find_neighbours();
+    const std::size_t found = find_crossed_rows(rows);
+    if (found == 0) return;
+    add_vertices(found);
+    add_cells(found);
+  }
+
+  void begin_plane() {
+    if (row_ % numbers_.plane_rows != 0) return;
+    plane_vertices_ = 0;
+    numbers_.plane_first[static_cast<std::size_t>(row_ / numbers_.plane_rows)] = job_.result->vertices;
+  }
+
+  // Which neighbours the rows of the strip have, and their masks. Only the first row may have none along
+  // axis 1.
+  void find_neighbours() {
+    strip_existing_ = axis_1;
+    for (int axis = D > 2 ? 2 : 1; axis < D; ++axis)
+      strip_existing_ |= static_cast<unsigned>(index_[axis] > 0) << (axis - 1);
     for (unsigned back = 0; back < places; ++back) {
-      const unsigned uniform = uniform_back(back & existing_);
+      if ((back & ~strip_existing_) != 0) continue;
+      masks_[back] =
+          window_.mask(back & last_axis ? parity() ^ 1 : parity(), window_row_ - window_back_[back]);
+    }
+  }
+  unsigned existing(std::int64_t row) const {
+    return row == 0 && D > 2 && index_[1] == 0 ? strip_existing_ & ~axis_1 : strip_existing_;
+  }
+  const std::uint64_t* mask(unsigned back, std::int64_t row) const { return masks_[back] + row * words_; }
+
+  // Which rows of the strip, with all their neighbours, are not of one label.
+  std::array<std::uint64_t, 4> mixed_rows() {
+    typedef std::uint8_t Bytes __attribute__((vector_size(most_strip_rows)));
+    Bytes any{}, all = ~any;
+    for (unsigned back = 0; back < places; ++back) {
+      if ((back & ~strip_existing_) != 0) continue;
+      Bytes uniform;
+      std::memcpy(
+          &uniform,
+          window_.uniform(back & last_axis ? parity() ^ 1 : parity(), window_row_ - window_back_[back]),
+          sizeof uniform);
       any |= uniform, all &= uniform;
     }
-    if (any == 0 || all == 255) return;
-    std::array<const std::uint64_t*, places> masks{};
-    for (unsigned back = 0; back < places; ++back)
-      if ((back & ~existing_) == 0) masks[back] = masks_back(back);
-    find_crossed_edges(masks);
-    if (existing_ == top) find_active_cells(masks);
+    const auto mixed = (any != 0) & (all != 255);
+    std::array<std::uint64_t, 4> bytes;
+    std::memcpy(&bytes, &mixed, sizeof bytes);
+    return bytes;
   }
 
-  void begin_row_numbers() {
-    if (rows_left_in_plane_ == 0) {
-      rows_left_in_plane_ = numbers_.plane_rows;
-      plane_vertices_ = 0;
-      numbers_.plane_first[static_cast<std::size_t>(row_ / numbers_.plane_rows)] = job_.result->vertices;
+  // Writes the words of crossed edges and active cells of the rows that may have some, and lists those rows.
+  std::size_t find_crossed_rows(std::int64_t rows) {
+    std::size_t found = 0;
+    const std::array<std::uint64_t, 4> mixed = mixed_rows();
+    for (std::int64_t first = 0; first < rows; first += 8) {
+      std::uint64_t eight = mixed[static_cast<std::size_t>(first / 8)];
+      if (rows - first < 8) eight &= (std::uint64_t{1} << (8 * (rows - first))) - 1;
+      for (; eight != 0; ++found) {
+        const int byte = std::countr_zero(eight) / 8;
+        eight &= ~(std::uint64_t{255} << (8 * byte));
+        found_rows_[found] = first + byte;
+        find_crossed_edges(first + byte, memory_.crossed.data() + found * Edges::directions * row_words());
+        find_active_cells(first + byte, memory_.active.data() + found * row_words());
+      }
     }
-    --rows_left_in_plane_;
+    std::fill_n(memory_.crossed.data() + found * Edges::directions * row_words(), word_lanes, 0);
+    std::fill_n(memory_.active.data() + found * row_words(), word_lanes, 0);
+    return found;
   }
+  std::size_t row_words() const { return static_cast<std::size_t>(words_); }
 
-  void find_crossed_edges(const std::array<const std::uint64_t*, places>& masks) {
-    std::uint32_t* row_first = &numbers_.row_first[static_cast<std::size_t>(row_) * Edges::directions];
-    const std::size_t before = queue_.size();
-    queue_.set_row(row_, index_, row_samples_);
-    for (unsigned number = 0; number < Edges::directions; ++number) {
+  // Vertices ----------------------------------------------------------------------------------------------
+
+  // The upper ends of the crossed edges that end in a row, for each direction; and words of no meaning
+  // behind.
+  void find_crossed_edges(std::int64_t row, std::uint64_t* crossed) const {
+    const unsigned exist = existing(row);
+    const std::uint64_t* upper = mask(0, row);
+    for (unsigned number = 0; number < Edges::directions; ++number, crossed += words_) {
       const unsigned direction = Edges::direction(number), back = direction >> 1;
-      row_first[number] = plane_vertices_ + static_cast<std::uint32_t>(queue_.size() - before);
-      if ((back & ~existing_) != 0) continue;
-      std::uint64_t carry = 0; // of the shift by one sample; the first has none before it
-      for (std::int64_t word = 0; word < words_; ++word)
-        queue_.add(crossed_edges(direction, 0, masks[0], masks[back], word, carry), word);
-      queue_.end_group(direction, (back & last_axis) != 0);
+      if ((back & ~exist) != 0) {
+        std::fill_n(crossed, words_, 0);
+        continue;
+      }
+      const std::uint64_t* lower = mask(back, row);
+      const std::uint64_t* edges_exist = memory_.edges_exist.data();
+      for (std::int64_t word = 0; word < words_; word += word_lanes) {
+        const Words ends = load_words(upper + word), starts = load_words(lower + word);
+        if (direction & 1)
+          store_words(crossed + word, (ends ^ (starts << 1 | load_words(lower + word - 1) >> 63)) &
+                                          load_words(edges_exist + word));
+        else
+          store_words(crossed + word, ends ^ starts);
+      }
+      if (!job_.present->all())
+        for (std::int64_t word = 0; word < words_; ++word)
+          crossed[word] &= edges_of_present_cells(direction, 0, row, word);
     }
-    const std::size_t found = queue_.size() - before;
-    plane_vertices_ += static_cast<std::uint32_t>(found);
-    job_.result->vertices += found;
   }
 
-  // The upper ends of the crossed edges of a direction that end in the row `end` before the current one, in
-  // one word: from the masks of that row and of the one where they start.
-  std::uint64_t crossed_edges(unsigned direction, unsigned end, const std::uint64_t* upper_mask,
-                              const std::uint64_t* lower_mask, std::int64_t word,
-                              std::uint64_t& carry) const {
-    std::uint64_t lower = lower_mask[word], exist = ~std::uint64_t{0};
-    if (direction & 1) {
-      const std::uint64_t shifted = lower << 1 | carry;
-      carry = lower >> 63;
-      lower = shifted;
-      exist = word == words_ - 1 ? last_word_bits_ : exist;
-      if (word == 0) exist &= ~std::uint64_t{1};
-    }
-    if (!job_.present->all()) exist &= edges_of_present_cells(direction, end, word);
-    return (upper_mask[word] ^ lower) & exist;
-  }
-
-  // The upper ends of the edges of a direction, ending in that row, that belong to a cell without NaN. Such
-  // a cell starts in a row that lies further back along the edge's axes, and maybe along others.
-  std::uint64_t edges_of_present_cells(unsigned direction, unsigned end, std::int64_t word) const {
+  // The upper ends of the edges of a direction that belong to a cell without NaN and end in the row `end`
+  // before one of the strip. Such a cell starts in a row that lies further back along the edge's axes, and
+  // maybe along others.
+  std::uint64_t edges_of_present_cells(unsigned direction, unsigned end, std::int64_t row,
+                                       std::int64_t word) const {
     std::uint64_t edges = 0;
     for (unsigned back = 0; back < places; ++back) {
-      if ((direction >> 1 & ~back) != 0 || !row_exists(end, back)) continue;
-      const std::uint64_t* cells = present_cells(rows_back_[end] + rows_back_[back]);
+      if ((direction >> 1 & ~back) != 0 || !row_exists(end, back, row)) continue;
+      const std::uint64_t* cells = present_cells(row, rows_back_[end] + rows_back_[back]);
       edges |= cells[word] << 1 | (word > 0 ? cells[word - 1] >> 63 : 0);
       if ((direction & 1) == 0) edges |= cells[word];
     }
     return edges;
   }
-  bool row_exists(unsigned end, unsigned back) const {
+  bool row_exists(unsigned end, unsigned back, std::int64_t row) const {
     for (int axis = 1; axis < D; ++axis)
-      if (index_[axis] < (end >> (axis - 1) & 1) + (back >> (axis - 1) & 1)) return false;
+      if (index_[axis] + (axis == 1 ? row : 0) < (end >> (axis - 1) & 1) + (back >> (axis - 1) & 1))
+        return false;
     return true;
   }
-  // Cells without NaN whose lowest corners are in the row so many rows before the current one.
-  const std::uint64_t* present_cells(std::int64_t rows_back) const {
-    return job_.present->words.data() + (row_ - rows_back) * words_;
+  // Cells without NaN whose lowest corners are in the row so many rows before one of the strip.
+  const std::uint64_t* present_cells(std::int64_t row, std::int64_t rows_back) const {
+    return job_.present->words.data() + (row_ + row - rows_back) * words_;
   }
 
-  void find_active_cells(const std::array<const std::uint64_t*, places>& masks) {
-    const std::size_t first_code = cells_.code_count;
-    if (!find_active_words(masks)) return;
-    make_columns(masks);
-    // `add_cells` may write a word's codes whole, wherever its cells begin.
-    const std::size_t most = first_code + static_cast<std::size_t>(64 * words_ + 64);
-    if (most > cells_.codes.size()) cells_.codes.resize(std::max(2 * cells_.codes.size(), most));
-    if (job_.present->all() || row_of_cells_is_present()) {
-      for (std::int64_t word = 0; word < words_; ++word) add_cells(active_[word], word);
-      cells_.runs.push_back(
-          {row_, static_cast<std::uint32_t>(cells_.code_count - first_code), CellRun::no_restart});
-    } else {
-      add_runs_between_missing();
+  // Adds the vertices on the crossed edges of the rows found.
+  void add_vertices(std::size_t found) {
+    if (!queue_.has_room_for(found)) {
+      flush_queue();
+      queue_.forget_rows();
     }
-  }
-
-  // Which cells have both labels; false if none has.
-  bool find_active_words(const std::array<const std::uint64_t*, places>& masks) {
-    std::uint64_t any_next = 0, all_next = 0, found = 0; // of the word behind
-    for (std::int64_t word = words_ - 1; word >= 0; --word) {
-      std::uint64_t any = 0, all = ~std::uint64_t{0};
-      for (const std::uint64_t* mask : masks) any |= mask[word], all &= mask[word];
-      const std::uint64_t any_right = any >> 1 | any_next << 63, all_right = all >> 1 | all_next << 63;
-      any_next = any, all_next = all;
-      std::uint64_t active = (any | any_right) & ~(all & all_right);
-      if (word == words_ - 1) active &= last_word_bits_ >> 1; // the last sample starts no cell
-      if (!job_.present->all()) active &= present_cells(rows_back_[top])[word];
-      active_[word] = active;
-      found |= active;
-    }
-    return found != 0;
-  }
-
-  // The label columns that active cells need.
-  void make_columns(const std::array<const std::uint64_t*, places>& masks) {
-    for (std::int64_t word = 0; word < words_; ++word) {
-      if (active_[word] == 0 && (word == 0 || active_[word - 1] >> 63 == 0)) continue;
-      std::array<std::uint64_t, 8> rows{};
-      alignas(64) std::array<std::array<std::uint8_t, 64>, (places + 7) / 8> bytes;
-      for (unsigned group = 0; group < bytes.size(); ++group) {
-        for (unsigned place = 0; place < std::min(places, 8u); ++place)
-          rows[place] = masks[top ^ (8 * group + place)][word];
-        transpose(rows, bytes[group].data());
-      }
-      for (int column = 0; column < 64; ++column) {
-        Column labels = 0;
-        for (unsigned group = 0; group < bytes.size(); ++group)
-          labels = static_cast<Column>(labels | static_cast<Column>(bytes[group][column] << (8 * group)));
-        columns_[64 * word + column] = labels;
+    std::uint32_t first_group = 0;
+    const std::uint64_t* crossed = memory_.crossed.data();
+    const std::uint32_t before = plane_vertices_;
+    for (std::size_t i = 0; i < found; ++i) {
+      const std::int64_t row = found_rows_[i];
+      auto index = index_;
+      if constexpr (D > 2) index[1] += row;
+      const std::uint32_t group = queue_.add_row(row_ + row, index, samples_.at(index));
+      if (i == 0) first_group = group; // those of the others follow
+      std::uint32_t* row_first =
+          &numbers_.row_first[static_cast<std::size_t>(row_ + row) * Edges::directions];
+      for (unsigned number = 0; number < Edges::directions; ++number) {
+        row_first[number] = plane_vertices_;
+        for (std::int64_t word = 0; word < words_; ++word)
+          plane_vertices_ += static_cast<std::uint32_t>(std::popcount(*crossed++));
       }
     }
+    job_.result->vertices += plane_vertices_ - before;
+
+    const std::size_t listed = list_nonzero(memory_.crossed.data(), found * Edges::directions * row_words(),
+                                            memory_.listed.data(), memory_.listed_at.data());
+    const auto words = static_cast<std::uint32_t>(words_);
+    for (std::size_t i = 0; i < listed; ++i) {
+      const std::uint32_t at = memory_.listed_at[i], group = at / words;
+      queue_.add(memory_.listed[i], at - group * words, first_group + group);
+      if (queue_.has_enough()) flush_queue();
+    }
   }
 
-  // Appends the codes of the cells in `active`, a word of the row.
-  void add_cells(std::uint64_t active, std::int64_t word) {
-    const Column* columns = columns_.data() + 64 * word;
-    typename Cells<D>::Code* codes = cells_.codes.data() + cells_.code_count;
-    cells_.code_count += static_cast<std::size_t>(std::popcount(active));
-#if defined(HYPERISO_AVX512)
-    if constexpr (D == 3) {
-      const __m512i left = _mm512_maskz_compress_epi8(active, _mm512_loadu_si512(columns));
-      const __m512i right = _mm512_maskz_compress_epi8(active, _mm512_loadu_si512(columns + 1));
-      const __m512i both = _mm512_or_si512(left, _mm512_slli_epi16(right, 4)); // labels of 4 bits
-      _mm512_storeu_si512(codes, _mm512_cvtepu8_epi16(_mm512_castsi512_si256(both)));
-      _mm512_storeu_si512(codes + 32, _mm512_cvtepu8_epi16(_mm512_extracti64x4_epi64(both, 1)));
+  // Cells -------------------------------------------------------------------------------------------------
+
+  // Which cells below a row have both labels.
+  void find_active_cells(std::int64_t row, std::uint64_t* active) const {
+    if (existing(row) != top) {
+      std::fill_n(active, words_, 0);
       return;
     }
-    if constexpr (D == 4) {
-      const __m512i left = _mm512_maskz_compress_epi8(active, _mm512_loadu_si512(columns));
-      const __m512i right = _mm512_maskz_compress_epi8(active, _mm512_loadu_si512(columns + 1));
-      const __m512i low = _mm512_unpacklo_epi8(left, right), high = _mm512_unpackhi_epi8(left, right);
-      // Each holds 8 of every 16 codes: put them in order.
-      const __m512i first = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11),
-                    second = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
-      _mm512_storeu_si512(codes, _mm512_permutex2var_epi64(low, first, high));
-      _mm512_storeu_si512(codes + 32, _mm512_permutex2var_epi64(low, second, high));
-      return;
+    const std::uint64_t* cells_exist = memory_.cells_exist.data();
+    std::int64_t word = (words_ - 1) / word_lanes * word_lanes;
+    // From the end, for a cell in the last place of a word ends in the next. Behind the row there is
+    // anything, but no cell.
+    Words next_any{}, next_all{};
+    for (; word >= 0; word -= word_lanes) {
+      Words any{}, all = ~any;
+      for (unsigned back = 0; back < places; ++back) {
+        const Words labels = load_words(mask(back, row) + word);
+        any |= labels, all &= labels;
+      }
+      const Words any_right = any >> 1 | following(any, next_any) << 63;
+      const Words all_right = all >> 1 | following(all, next_all) << 63;
+      next_any = any, next_all = all;
+      const Words both = (any | any_right) & ~(all & all_right) & load_words(cells_exist + word);
+      if (word + word_lanes <= words_)
+        store_words(active + word, both);
+      else
+        std::memcpy(active + word, &both, static_cast<std::size_t>(words_ - word) * sizeof(std::uint64_t));
     }
-#endif
-    for (; active != 0; active &= active - 1) {
-      const int x = std::countr_zero(active);
-      *codes++ = static_cast<typename Cells<D>::Code>(columns[x] | static_cast<std::uint32_t>(columns[x + 1])
-                                                                       << places);
+    if (!job_.present->all())
+      for (word = 0; word < words_; ++word) active[word] &= present_cells(row, rows_back_[top])[word];
+  }
+
+  // Adds the codes of the active cells below the rows found, and lists them as runs.
+  void add_cells(std::size_t found) {
+    const std::size_t listed = list_nonzero(memory_.active.data(), found * row_words(), memory_.listed.data(),
+                                            memory_.listed_at.data());
+    if (listed == 0) return;
+    // A word's codes may be written whole, wherever they begin.
+    make_room(cells_.codes, cells_.code_count + 64 * listed + 64);
+    make_room(cells_.runs, cells_.run_count + found * most_runs_in_row());
+    std::uint32_t last = UINT32_MAX; // of the rows found
+    for (std::size_t i = 0; i < listed; ++i) {
+      const std::uint64_t active = memory_.listed[i];
+      const std::uint32_t at = memory_.listed_at[i], number = at / static_cast<std::uint32_t>(words_);
+      const auto word = static_cast<std::int64_t>(at) - number * words_;
+      const std::int64_t row = found_rows_[number];
+      const std::int64_t offset = row * words_ + word;
+      write_codes<D>(
+          active, [&](unsigned place) { return masks_[top ^ place] + offset; },
+          cells_.codes.data() + cells_.code_count);
+      const auto cells = static_cast<std::uint32_t>(std::popcount(active));
+      cells_.code_count += cells;
+      if (!job_.present->all() && !row_of_cells_is_present(row)) {
+        if (number != last) add_runs_between_missing(number);
+      } else {
+        // Without a branch: whether a row goes on is hard to guess.
+        const std::uint32_t before = number == last ? cells_.runs[cells_.run_count - 1].cells : 0;
+        cells_.run_count += number != last;
+        CellRun& run = cells_.runs[cells_.run_count - 1];
+        run.row = row_ + row;
+        run.cells = before + cells;
+        run.restart = CellRun::no_restart;
+      }
+      last = number;
     }
   }
+  std::size_t most_runs_in_row() const {
+    return job_.present->all() ? 1 : static_cast<std::size_t>(grid_.dims[0] / 2 + 1);
+  }
+  template <class T>
+  static void make_room(Array<T>& array, std::size_t size) {
+    if (size > array.size()) array.resize(std::max(2 * array.size(), size));
+  }
+
   // How many simplices the unit's cells hold.
   std::uint64_t count_simplices() const {
     std::uint64_t simplices = 0;
@@ -380,43 +412,44 @@ class Scan {
     return simplices;
   }
 
-  bool row_of_cells_is_present() const {
-    const std::uint64_t* cells = present_cells(rows_back_[top]);
+  bool row_of_cells_is_present(std::int64_t row) const {
+    const std::uint64_t* cells = present_cells(row, rows_back_[top]);
     for (std::int64_t word = 0; word < words_ - 1; ++word)
       if (~cells[word] != 0) return false;
     return cells[words_ - 1] == last_word_bits_ >> 1;
   }
 
   // Behind a cell with NaN, the next cell's labels do not tell how many vertices the row had so far: a run
-  // starts wherever an active cell does not follow another.
-  void add_runs_between_missing() {
+  // starts wherever an active cell does not follow another. `number`: of the rows found.
+  void add_runs_between_missing(std::size_t number) {
+    const std::uint64_t* active = memory_.active.data() + number * row_words();
     bool follows = false;
-    for (std::int64_t word = 0; word < words_; ++word)
-      for (int bit = 0; bit < 64; ++bit) {
-        const std::uint64_t one = std::uint64_t{1} << bit;
-        const bool is_active = active_[word] & one;
-        if (is_active && !follows) begin_run(64 * word + bit);
-        if (is_active) add_cells(one, word), ++cells_.runs.back().cells;
-        follows = is_active;
-      }
+    for (std::int64_t x = 0; x < 64 * words_; ++x) {
+      const bool is_active = active[x / 64] >> (x % 64) & 1;
+      if (is_active && !follows) begin_run(found_rows_[number], x);
+      if (is_active) ++cells_.runs[cells_.run_count - 1].cells;
+      follows = is_active;
+    }
   }
-  void begin_run(std::int64_t x) {
-    cells_.runs.push_back({row_, 0, static_cast<std::uint32_t>(cells_.restarts.size())});
+  void begin_run(std::int64_t row, std::int64_t x) {
+    cells_.runs[cells_.run_count++] = {row_ + row, 0, static_cast<std::uint32_t>(cells_.restarts.size())};
     // An edge within the left column ends at x, one across at x + 1.
     for (const CellEdge edge : Edges::in_column_edges)
-      cells_.restarts.push_back(crossed_before(edge, false, x));
+      cells_.restarts.push_back(crossed_before(edge, false, row, x));
     for (const CellEdge edge : Edges::across_edges)
-      cells_.restarts.push_back(crossed_before(edge, true, x + 1));
+      cells_.restarts.push_back(crossed_before(edge, true, row, x + 1));
   }
   // How many crossed edges of the direction of `edge` end in its row before x.
-  std::uint32_t crossed_before(CellEdge edge, bool across, std::int64_t x) const {
+  std::uint32_t crossed_before(CellEdge edge, bool across, std::int64_t row, std::int64_t x) const {
     const unsigned direction = static_cast<unsigned>(edge.lower ^ edge.upper) << 1 | across;
     const unsigned end = top ^ edge.upper;
-    const std::uint64_t *upper = masks_back(end), *lower = masks_back(top ^ edge.lower);
-    std::uint64_t carry = 0;
+    const std::uint64_t *upper = mask(end, row), *lower = mask(top ^ edge.lower, row);
     std::uint32_t count = 0;
     for (std::int64_t word = 0; 64 * word < x; ++word) {
-      std::uint64_t crossed = crossed_edges(direction, end, upper, lower, word, carry);
+      std::uint64_t starts = lower[word];
+      if (across) starts = starts << 1 | lower[word - 1] >> 63;
+      std::uint64_t crossed = (upper[word] ^ starts) & edges_of_present_cells(direction, end, row, word);
+      if (across) crossed &= memory_.edges_exist[static_cast<std::size_t>(word)];
       if (x < 64 * (word + 1)) crossed &= (std::uint64_t{1} << (x - 64 * word)) - 1;
       count += static_cast<std::uint32_t>(std::popcount(crossed));
     }
@@ -424,6 +457,7 @@ class Scan {
   }
 
   static constexpr std::size_t large_batch = 8192;
+  static constexpr std::size_t margin = 16; // words that a vector may read or write behind others
 
   ScanJob<D>& job_;
   const Samples<D>& samples_;
@@ -431,22 +465,23 @@ class Scan {
   const Unit unit_;
   Cells<D>& cells_;
   MaskWindow& window_;
+  ScanMemory& memory_;
   VertexNumbers& numbers_;
-  const std::int64_t words_;
+  const std::int64_t words_, strip_rows_;
   std::uint64_t last_word_bits_;                   // of samples in the last word of a row
   std::array<std::int64_t, places> rows_back_{};   // how far the row `back` before one lies in the field
   std::array<std::int64_t, places> window_back_{}; // and in the window, but for the layer
   EdgeQueue<D, M> queue_;
-  std::vector<std::byte> gathered_;
-  std::vector<Column> columns_;
-  std::vector<std::uint64_t> active_;
+  std::uint32_t plane_vertices_ = 0;
 
-  std::array<std::int64_t, D> index_{}; // of the current row's first sample
+  // Of the strip's first row:
+  std::array<std::int64_t, D> index_{}; // of its first sample
   std::int64_t row_ = 0, window_row_ = 0;
   const std::byte* row_samples_ = nullptr;
-  unsigned existing_ = 0;               // axes along which there is a row before it, a set like a place
-  std::int64_t rows_left_in_plane_ = 0; // of VertexNumbers; units consist of whole planes
-  std::uint32_t plane_vertices_ = 0;
+  unsigned strip_existing_ = 0; // axes along which there is a row before, a set like a place; for axis 1, of
+                                // the others
+  std::array<const std::uint64_t*, places> masks_{};       // of the row `back` before it
+  std::array<std::int64_t, most_strip_rows> found_rows_{}; // of the strip, that may have crossed edges
 };
 
 template <int D, Method M>

@@ -5,39 +5,10 @@
 // layer before, which have long left the caches, are on their way by then; the divisions come in vectors; and
 // no loop is as short as a row has edges, for the processor guesses the end of short loops wrong.
 
-#include "extract/kernels/prelude.hpp"
+#include "extract/kernels/words.hpp"
 
 namespace hyperiso {
 namespace {
-
-// Writes base + b for every set bit b of `bits`, in ascending order, and maybe some numbers behind them.
-inline void write_bit_numbers(std::uint64_t bits, std::uint32_t base, std::uint32_t* out) {
-#if defined(HYPERISO_AVX512)
-  alignas(64) static constexpr auto numbers = [] {
-    std::array<std::uint8_t, 64> all{};
-    for (unsigned i = 0; i < 64; ++i) all[i] = static_cast<std::uint8_t>(i);
-    return all;
-  }();
-  const __m512i found = _mm512_maskz_compress_epi8(bits, _mm512_load_si512(numbers.data()));
-  const __m512i offset = _mm512_set1_epi32(static_cast<int>(base));
-  _mm512_storeu_si512(out, _mm512_add_epi32(offset, _mm512_cvtepu8_epi32(_mm512_castsi512_si128(found))));
-  const int count = std::popcount(bits);
-  if (count <= 16) return;
-  const auto write_next = [&](__m128i bytes, std::uint32_t* to) {
-    _mm512_storeu_si512(to, _mm512_add_epi32(offset, _mm512_cvtepu8_epi32(bytes)));
-  };
-  write_next(_mm512_extracti32x4_epi32(found, 1), out + 16);
-  if (count <= 32) return;
-  write_next(_mm512_extracti32x4_epi32(found, 2), out + 32);
-  write_next(_mm512_extracti32x4_epi32(found, 3), out + 48);
-#else
-  for (; bits != 0; out += 4)
-    for (int i = 0; i < 4; ++i) {
-      out[i] = base + static_cast<std::uint32_t>(std::countr_zero(bits));
-      bits &= bits - 1;
-    }
-#endif
-}
 
 // What the crossed edges of one row and direction have in common.
 template <int D, Method M>
@@ -56,81 +27,100 @@ struct EdgeGroup {
 template <int D, Method M>
 class EdgeQueue {
  public:
-  explicit EdgeQueue(const ScanJob<D>& job)
+  using Edges = CellEdges<D, M>;
+  using Group = EdgeGroup<D, M>;
+
+  EdgeQueue(const ScanJob<D>& job, ScanMemory& memory)
       : samples_(*job.samples), row_kernels_(*job.row_kernels), wide_(job.wide_positions),
         keep_edges_(job.keep_edges), first_row_(job.first_row) {
-    const auto most_in_row = static_cast<std::size_t>(job.grid->dims[0]) * CellEdges<D, M>::directions;
-    upper_.resize(enough + most_in_row + 64);
-    group_.resize(upper_.size());
-    lower_values_.resize(upper_.size());
-    upper_values_.resize(upper_.size());
-    for (unsigned number = 0; number < CellEdges<D, M>::directions; ++number) {
-      const unsigned direction = CellEdges<D, M>::direction(number);
+    memory.edge_upper.reset(most_edges);
+    memory.edge_group.reset(most_edges);
+    memory.lower_values.reset(most_edges);
+    memory.upper_values.reset(most_edges);
+    memory.groups.reset(most_rows * Edges::directions * sizeof(Group));
+    memory.starts.reset(most_rows * sizeof(Start));
+    upper_ = memory.edge_upper.data();
+    group_ = memory.edge_group.data();
+    lower_values_ = memory.lower_values.data();
+    upper_values_ = memory.upper_values.data();
+    groups_ = static_cast<Group*>(memory.groups.data());
+    starts_ = static_cast<Start*>(memory.starts.data());
+    const auto sample_size = static_cast<std::int64_t>(samples_.sample_size);
+    for (unsigned number = 0; number < Edges::directions; ++number) {
+      const unsigned direction = Edges::direction(number);
       std::int64_t samples_back = 0;
       for (int axis = 0; axis < D; ++axis)
         if (direction >> axis & 1) samples_back += samples_.strides[axis];
-      bytes_back_[direction] = samples_back * static_cast<std::int64_t>(samples_.sample_size);
+      bytes_back_[number] = samples_back * sample_size;
     }
+    const std::int64_t layer_bytes = job.grid->dims[0] * job.grid->layer_rows * sample_size;
+    far_ = layer_bytes > stays_in_cache ? 1u << (D - 1) : 0;
   }
 
-  std::size_t size() const { return count_; }
   bool has_enough() const { return count_ >= enough; }
+  // Whether so many rows more have room for their groups.
+  bool has_room_for(std::size_t rows) const { return rows_ + rows <= most_rows; }
 
-  // The row that the following edges end in: its number, the index of its first sample, and that sample.
-  void set_row(std::int64_t row, const std::array<std::int64_t, D>& index, const std::byte* samples) {
-    row_ = first_row_ + row;
-    layer_ = static_cast<std::size_t>(index[D - 1]);
-    row_samples_ = samples;
-    // A row without edges leaves its place to the next.
-    if (group_count_ > 0 && groups_[group_count_ - 1].start == starts_[row_count_].data()) ++row_count_;
+  // Adds a row that edges end in: its number, the index of its first sample, and that sample. Returns the
+  // first of its groups, which are numbered like the directions.
+  std::uint32_t add_row(std::int64_t row, const std::array<std::int64_t, D>& index,
+                        const std::byte* samples) {
+    std::array<const double*, D> here;
     for (int axis = 0; axis < D; ++axis) {
-      here_[axis] = samples_.coordinates[axis].data() + index[axis];
+      here[axis] = samples_.coordinates[axis].data() + index[axis];
       if (wide_)
-        write_start(axis, *here_[axis]);
+        write_start(axis, *here[axis]);
       else
-        write_start(axis, static_cast<float>(*here_[axis]));
+        write_start(axis, static_cast<float>(*here[axis]));
     }
+    const auto first = static_cast<std::uint32_t>(rows_ * Edges::directions);
+    for (unsigned number = 0; number < Edges::directions; ++number) {
+      const unsigned direction = Edges::direction(number);
+      Group& group = groups_[first + number];
+      group.rows = {samples - bytes_back_[number], samples};
+      group.varies = direction & 1 ? ~std::uint32_t{0} : 0;
+      group.direction = direction;
+      group.layer = static_cast<std::size_t>(index[D - 1]);
+      group.edge = (static_cast<GridEdge>(first_row_ + row) << D | direction) *
+                   static_cast<GridEdge>(samples_.dims[0]);
+      group.start = starts_[rows_].data();
+      if constexpr (M == Method::hull)
+        group.lower[0] = here[std::countr_zero(direction)] - 1;
+      else
+        for (int axis = 0; axis < D; ++axis) group.lower[axis] = here[axis] - 1;
+    }
+    ++rows_;
+    return first;
   }
-  // Adds the crossed edges whose upper ends are the set bits of word `word` of the row.
-  void add(std::uint64_t bits, std::int64_t word) {
-    if (bits == 0) return;
+  // Adds the crossed edges of a group whose upper ends are the set bits of a word of its row.
+  void add(std::uint64_t bits, std::int64_t word, std::uint32_t group) {
     const auto count = static_cast<std::size_t>(std::popcount(bits));
-    write_bit_numbers(bits, static_cast<std::uint32_t>(64 * word), upper_.data() + count_);
-    const auto group = static_cast<std::uint32_t>(group_count_);
-    std::uint32_t* groups = group_.data() + count_;
+    std::uint32_t* upper = upper_ + count_;
+    write_bit_numbers(bits, static_cast<std::uint32_t>(64 * word), upper);
+    std::uint32_t* groups = group_ + count_;
     std::size_t i = 0;
     do // up to 16 without a branch
       for (std::size_t k = 0; k < 16; ++k) groups[i + k] = group;
     while ((i += 16) < count);
+    if (groups_[group].direction & far_) prefetch_lower(groups_[group], upper, count);
     count_ += count;
-  }
-  // Makes a group of those added since the last one. `far`: their lower ends are in memory that has not been
-  // read for long.
-  void end_group(unsigned direction, bool far) {
-    if (count_ == grouped_) return;
-    if (group_count_ == groups_.size()) groups_.resize(2 * groups_.size());
-    EdgeGroup<D, M>& group = groups_[group_count_++];
-    group.rows = {row_samples_ - bytes_back_[direction], row_samples_};
-    group.varies = direction & 1 ? ~std::uint32_t{0} : 0;
-    group.direction = direction;
-    group.layer = layer_;
-    group.edge = (static_cast<GridEdge>(row_) << D | direction) * static_cast<GridEdge>(samples_.dims[0]);
-    group.start = starts_[row_count_].data();
-    if constexpr (M == Method::hull)
-      group.lower[0] = here_[std::countr_zero(direction)] - 1;
-    else
-      for (int axis = 0; axis < D; ++axis) group.lower[axis] = here_[axis] - 1;
-    if (far) {
-      const auto stride = samples_.strides[0] * static_cast<std::int64_t>(samples_.sample_size);
-      for (std::size_t i = grouped_; i < count_; ++i)
-        __builtin_prefetch(group.rows.lower + upper_[i] * stride);
-    }
-    grouped_ = count_;
   }
 
   // Appends their vertices to `batch` and empties the queue.
   void flush(VertexBatch& batch) {
-    if (count_ == 0) return;
+    if (count_ > 0) compute(batch);
+    count_ = 0;
+  }
+  // After that: forgets the rows.
+  void forget_rows() { rows_ = 0; }
+
+ private:
+  static constexpr std::size_t enough = 512, most_edges = enough + 64 + 64;
+  static constexpr std::size_t most_rows = 256;
+  static constexpr std::int64_t stays_in_cache = 1 << 19; // bytes of a layer until the next one is read
+  using Start = std::array<std::byte, D * sizeof(double)>;
+
+  void compute(VertexBatch& batch) {
     make_room(batch, count_);
     compute_weights();
     if (wide_)
@@ -142,16 +132,21 @@ class EdgeQueue {
       for (std::size_t i = 0; i < count_; ++i) edges[i] = groups_[group_[i]].edge + upper_[i];
     }
     batch.count += count_;
-    count_ = grouped_ = group_count_ = row_count_ = 0;
   }
-
- private:
-  static constexpr std::size_t enough = 512;
 
   template <class Real>
   void write_start(int axis, Real coordinate) {
-    std::memcpy(starts_[row_count_].data() + static_cast<std::size_t>(axis) * sizeof(Real), &coordinate,
+    std::memcpy(starts_[rows_].data() + static_cast<std::size_t>(axis) * sizeof(Real), &coordinate,
                 sizeof(Real));
+  }
+
+  // The lower ends are in memory that has not been read for long.
+  void prefetch_lower(const Group& group, const std::uint32_t* upper, std::size_t count) const {
+    const auto stride = samples_.strides[0] * static_cast<std::int64_t>(samples_.sample_size);
+    std::size_t i = 0;
+    do // four at a time: some numbers behind the last are harmless
+      for (std::size_t k = 0; k < 4; ++k) __builtin_prefetch(group.rows.lower + upper[i + k] * stride);
+    while ((i += 4) < count);
   }
 
   void make_room(VertexBatch& batch, std::size_t more) const {
@@ -163,10 +158,9 @@ class EdgeQueue {
 
   // Where the surface crosses each edge, to upper_values_.
   void compute_weights() {
-    double* a = lower_values_.data();
-    double* b = upper_values_.data();
-    row_kernels_.load(&groups_[0].rows, sizeof(EdgeGroup<D, M>), group_.data(), upper_.data(),
-                      samples_.strides[0], count_, a, b);
+    double* a = lower_values_;
+    double* b = upper_values_;
+    row_kernels_.load(&groups_[0].rows, sizeof(Group), group_, upper_, samples_.strides[0], count_, a, b);
     if (!samples_.levels.empty()) return compute_lifted_weights();
     const double isovalue = samples_.isovalue;
     // The formula of `crossing` where the difference is finite, as it always is but for infinite samples.
@@ -182,7 +176,7 @@ class EdgeQueue {
   // The same in a lifted field. Within a level it is the crossing of the field at that level, to the bit.
   void compute_lifted_weights() {
     for (std::size_t i = 0; i < count_; ++i) {
-      const EdgeGroup<D, M>& group = groups_[group_[i]];
+      const Group& group = groups_[group_[i]];
       const bool across = group.direction >> (D - 1) & 1;
       const double upper_level = samples_.levels[group.layer];
       const double lower_level = samples_.levels[group.layer - across];
@@ -194,9 +188,9 @@ class EdgeQueue {
   template <class Real>
   void write_positions(Real* position) const {
     const double* x = samples_.coordinates[0].data();
-    const double* weight = upper_values_.data();
+    const double* weight = upper_values_;
     for (std::size_t i = 0; i < count_; ++i, position += D) {
-      const EdgeGroup<D, M>& group = groups_[group_[i]];
+      const Group& group = groups_[group_[i]];
       const std::uint32_t at = upper_[i], start = at & group.varies;
       const auto along = [&](int axis, std::uint32_t offset) {
         const double* lower = group.lower[M == Method::hull ? 0 : axis] + offset;
@@ -219,24 +213,19 @@ class EdgeQueue {
   const Samples<D>& samples_;
   const RowKernels& row_kernels_;
   const bool wide_, keep_edges_;
-  const std::int64_t first_row_;
-  std::array<std::int64_t, 1 << D> bytes_back_{}; // from the upper to the lower end, by direction
-  // Of the current row.
-  std::int64_t row_ = 0;
-  std::size_t layer_ = 0;
-  const std::byte* row_samples_ = nullptr;
-  std::array<const double*, D> here_{}; // coordinates of its first sample
+  const std::int64_t first_row_;                             // of the job, in the whole field
+  unsigned far_;                                             // directions of edges from far back in memory
+  std::array<std::int64_t, Edges::directions> bytes_back_{}; // from the upper to the lower end
 
-  std::vector<EdgeGroup<D, M>> groups_{256};
-  std::size_t group_count_ = 0;
-  // Positions of the first samples of the rows that have groups, and of the current row. Not in the groups:
-  // what was written in parts and is read as a whole at once makes the processor wait.
-  std::vector<std::array<std::byte, D * sizeof(double)>> starts_{enough + 1};
-  std::size_t row_count_ = 0;
-  std::vector<std::uint32_t> upper_; // index along axis 0 of the upper end of each edge
-  std::vector<std::uint32_t> group_; // of each edge
-  std::vector<double> lower_values_, upper_values_;
-  std::size_t count_ = 0, grouped_ = 0; // edges, and those of them that have a group
+  Group* groups_;
+  // Positions of the first samples of the rows. Not in the groups: what was written in parts and is read as a
+  // whole at once makes the processor wait.
+  Start* starts_;
+  std::size_t rows_ = 0;
+  std::uint32_t* upper_; // index along axis 0 of the upper end of each edge
+  std::uint32_t* group_; // of each edge
+  double *lower_values_, *upper_values_;
+  std::size_t count_ = 0; // of edges
 };
 
 } // namespace
