@@ -10,11 +10,18 @@ namespace hyperiso::track_detail {
 template <int C>
 class Level {
  public:
-  Level(Sweep<C>* lower, Sweep<C>* upper) : lower_(lower), upper_(upper) {
-    if (upper_ && upper_->plain_below() && (!lower_ || lower_->plain_above()))
+  // `pieces`: of the surface at the step, if it is known.
+  Level(Sweep<C>* lower, Sweep<C>* upper, std::shared_ptr<const StepPieces> pieces = {})
+      : lower_(lower), upper_(upper) {
+    const bool plain = (!lower_ || lower_->plain_above()) && (!upper_ || upper_->plain_below());
+    if (plain && pieces) {
+      pieces_ = std::move(pieces);
+      follow_pieces();
+    } else if (plain && upper_) {
       follow_strands();
-    else
+    } else {
       find_components();
+    }
     if (lower_) lower_vertices_ = vertices_of_special(lower_places_);
     if (upper_) upper_vertices_ = vertices_of_special(upper_places_);
   }
@@ -49,11 +56,12 @@ class Level {
 
   // The component of the vertex on an edge within this step (numbered as within a lower step), if M has it.
   std::optional<std::size_t> component_of(GridEdge edge) const {
+    if (pieces_) return pieces_->piece_at(edge);
     if (upper_) {
-      if (const auto vertex = find(upper_->slab, edge)) return component_[upper_places_[*vertex]];
+      if (const auto vertex = upper_->slab.find(edge)) return component_[upper_places_[*vertex]];
     }
     if (lower_) {
-      const auto vertex = find(lower_->slab, edge + lower_->slab.step_offset);
+      const auto vertex = lower_->slab.find(edge + lower_->slab.step_offset);
       if (vertex && !lower_places_.empty()) return component_[lower_places_[*vertex]];
     }
     return std::nullopt;
@@ -62,31 +70,53 @@ class Level {
  private:
   static constexpr std::uint32_t none = UINT32_MAX;
 
-  // Where the slices below, at and above the step are alike: the components are the strands that begin here.
+  // Where the slices below, at and above the step are alike: the components are the pieces of the surface,
+  // which are the strands that begin here.
+  void follow_pieces() {
+    outcomes_.resize(pieces_->count());
+    plain_.assign(pieces_->count(), lower_ && upper_);
+    for (std::size_t piece = 0; piece < pieces_->count(); ++piece) {
+      const GridEdge edge = pieces_->first_edge(piece);
+      if (upper_) strands_out_.push_back({upper_->strand_at_lower_step(*upper_->slab.find(edge))});
+      if (lower_) strands_in_.push_back({strand_below(edge)});
+    }
+    if (!lower_) upper_places_ = places_of_pieces(upper_->slab, 0);
+    if (!upper_) lower_places_ = places_of_pieces(lower_->slab, lower_->slab.step_offset);
+  }
+  std::vector<std::uint32_t> places_of_pieces(Slab<C>& slab, GridEdge offset) {
+    std::vector<std::uint32_t> places;
+    for (std::size_t vertex = 0; vertex < pieces_->vertex_count(); ++vertex) {
+      const Vertex in_slab = *slab.find(pieces_->edge(vertex) + offset);
+      if (in_slab >= places.size()) places.resize(in_slab + 1, none);
+      places[in_slab] = static_cast<std::uint32_t>(component_.size());
+      component_.push_back(pieces_->piece(vertex));
+    }
+    return places;
+  }
   void follow_strands() {
-    const Slab<C>& slab = upper_->slab;
-    upper_places_.assign(slab.times.size(), none);
-    std::vector<std::uint32_t> number(slab.times.size(), none); // of components by strand
-    for (Vertex vertex = 0; vertex < slab.times.size() && slab.times[vertex] == 0; ++vertex) {
+    Slab<C>& slab = upper_->slab;
+    upper_places_.assign(slab.vertex_count(), none);
+    std::vector<std::uint32_t> number(slab.vertex_count(), none); // of components by strand
+    for (Vertex vertex = 0; vertex < slab.vertex_count() && slab.time(vertex) == 0; ++vertex) {
       const std::uint64_t strand = upper_->strand_at_lower_step(vertex);
       if (number[strand] == none) {
         number[strand] = static_cast<std::uint32_t>(outcomes_.size());
         outcomes_.emplace_back();
         plain_.push_back(lower_ != nullptr);
         strands_out_.push_back({strand});
-        if (lower_) strands_in_.push_back({strand_below(slab.edges[vertex])});
+        if (lower_) strands_in_.push_back({strand_below(slab.edge(vertex))});
       }
       upper_places_[vertex] = vertex;
       component_.push_back(number[strand]);
     }
   }
   std::uint64_t strand_below(GridEdge edge) {
-    const Slab<C>& slab = lower_->slab;
-    const Vertex twin = *find(slab, edge + slab.step_offset);
-    return lower_->strand_of(slab.stars.of(twin)[0]);
+    return lower_->strand_below(*lower_->slab.find(edge + lower_->slab.step_offset));
   }
 
   void find_components() {
+    if (lower_) lower_->slab.unfold_all();
+    if (upper_) upper_->slab.unfold_all();
     vertex_count_ = number_vertices();
     UnionFind united(vertex_count_);
     unite_across_slabs(united);
@@ -101,34 +131,29 @@ class Level {
   std::size_t number_vertices() {
     std::uint32_t count = 0;
     const auto number = [&](const Sweep<C>& sweep, double time, std::vector<std::uint32_t>& places) {
-      places.assign(sweep.slab.times.size(), none);
-      for (Vertex vertex = 0; vertex < places.size(); ++vertex)
-        if (sweep.slab.times[vertex] == time) places[vertex] = count++;
+      std::vector<Vertex> at_step;
+      for (Vertex vertex = 0; vertex < sweep.slab.vertex_count(); ++vertex)
+        if (sweep.slab.time(vertex) == time) at_step.push_back(vertex);
+      std::ranges::sort(at_step, {}, [&](Vertex vertex) { return sweep.slab.edge(vertex); });
+      places.assign(sweep.slab.vertex_count(), none);
+      for (const Vertex vertex : at_step) places[vertex] = count++;
     };
     if (upper_) number(*upper_, 0.0, upper_places_);
     if (lower_) number(*lower_, 1.0, lower_places_);
     return count;
   }
 
-  static std::optional<Vertex> find(const Slab<C>& slab, GridEdge edge) {
-    const auto place = std::ranges::lower_bound(slab.edges, edge);
-    if (place == slab.edges.end() || *place != edge) return std::nullopt;
-    return static_cast<Vertex>(place - slab.edges.begin());
-  }
-
   // A vertex within the step is in both slabs, unless cells without data are on one side of it.
   void unite_across_slabs(UnionFind& united) {
     paired_.assign(vertex_count_, false);
     if (!lower_ || !upper_) return;
-    const Slab<C>&below = lower_->slab, &above = upper_->slab;
-    Vertex other = 0;
-    for (Vertex vertex = 0; vertex < below.edges.size(); ++vertex) {
+    Slab<C>& below = lower_->slab;
+    for (Vertex vertex = 0; vertex < lower_places_.size(); ++vertex) {
       if (lower_places_[vertex] == none || !below.in_step(vertex)) continue;
-      const GridEdge edge = below.edges[vertex] - below.step_offset;
-      while (other < above.edges.size() && above.edges[other] < edge) ++other;
-      if (other == above.edges.size() || above.edges[other] != edge) continue;
-      united.unite(lower_places_[vertex], upper_places_[other]);
-      paired_[lower_places_[vertex]] = paired_[upper_places_[other]] = true;
+      const auto other = upper_->slab.find(below.edge(vertex) - below.step_offset);
+      if (!other) continue;
+      united.unite(lower_places_[vertex], upper_places_[*other]);
+      paired_[lower_places_[vertex]] = paired_[upper_places_[*other]] = true;
     }
   }
 
@@ -137,7 +162,7 @@ class Level {
     for (SimplexNumber number = 0; number < sweep.slab.simplex_count(); ++number) {
       std::uint32_t first = none;
       for (const Vertex vertex : sweep.slab.simplex(number)) {
-        if (sweep.slab.times[vertex] != time) continue;
+        if (sweep.slab.time(vertex) != time) continue;
         if (first == none)
           first = places[vertex];
         else
@@ -177,7 +202,7 @@ class Level {
     for (SimplexNumber number = 0; number < sweep.slab.simplex_count(); ++number) {
       const auto [first, last] = sweep.slab.time_range(number);
       if (first == last || (time == 0 ? first : last) != time) continue;
-      const std::uint64_t strand = sweep.strand_of(number);
+      const std::uint64_t strand = sweep.strand_of(number, time == 0 ? last : time);
       if (seen[strand]) continue;
       seen[strand] = true;
       for (const Vertex vertex : sweep.slab.simplex(number))
@@ -224,14 +249,8 @@ class Level {
   class Surroundings {
    public:
     Surroundings(const Level& level, std::size_t component) : level_(level) {
-      if (level.lower_) {
-        lower_vertices_ = level.lower_vertices_[component];
-        lower_star_ = star(level.lower_->slab, lower_vertices_);
-      }
-      if (level.upper_) {
-        upper_vertices_ = level.upper_vertices_[component];
-        upper_star_ = star(level.upper_->slab, upper_vertices_);
-      }
+      if (level.lower_) lower_vertices_ = level.lower_vertices_[component];
+      if (level.upper_) upper_vertices_ = level.upper_vertices_[component];
       for (const Vertex vertex : upper_vertices_) all_places.add(place_in_upper(vertex));
       for (const Vertex vertex : lower_vertices_)
         if (!upper_twin(vertex)) all_places.add(place_in_lower(vertex));
@@ -242,8 +261,10 @@ class Level {
     ChangeWithin change(bool count_rims) const {
       const auto any = [](Vertex) { return true; };
       SideFinder<C> sides;
-      const Side before = sides.find(level_.lower_->slab, lower_star_, 1, Direction::before, any);
-      const Side after = sides.find(level_.upper_->slab, upper_star_, 0, Direction::after, any);
+      const Side before = sides.find(level_.lower_->slab, star(level_.lower_->slab, lower_vertices_), 1,
+                                     Direction::before, any);
+      const Side after = sides.find(level_.upper_->slab, star(level_.upper_->slab, upper_vertices_), 0,
+                                    Direction::after, any);
       ChangeWithin change{after.euler - before.euler, 0};
       if constexpr (C == 4)
         if (count_rims) change.rims = rims(after, Direction::after) - rims(before, Direction::before);
@@ -261,51 +282,51 @@ class Level {
     }
 
    private:
-    static std::vector<SimplexNumber> star(const Slab<C>& slab, std::span<const Vertex> vertices) {
+    static std::vector<SimplexNumber> star(Slab<C>& slab, std::span<const Vertex> vertices) {
       std::vector<SimplexNumber> star;
       for (const Vertex vertex : vertices) {
-        const auto around = slab.stars.of(vertex);
+        const auto around = slab.star(vertex);
         star.insert(star.end(), around.begin(), around.end());
       }
-      std::ranges::sort(star);
+      std::ranges::sort(star, [&](auto a, auto b) { return slab.comes_before(a, b); });
       star.erase(std::unique(star.begin(), star.end()), star.end());
       return star;
     }
 
     std::optional<Vertex> upper_twin(Vertex lower) const {
-      const Slab<C>& slab = level_.lower_->slab;
+      Slab<C>& slab = level_.lower_->slab;
       if (!level_.upper_ || !slab.in_step(lower)) return std::nullopt;
-      return find(level_.upper_->slab, slab.edges[lower] - slab.step_offset);
+      return level_.upper_->slab.find(slab.edge(lower) - slab.step_offset);
     }
     std::optional<Vertex> lower_twin(Vertex upper) const {
-      const Slab<C>& slab = level_.upper_->slab;
+      Slab<C>& slab = level_.upper_->slab;
       if (!level_.lower_ || !slab.in_step(upper)) return std::nullopt;
-      return find(level_.lower_->slab, slab.edges[upper] + level_.lower_->slab.step_offset);
+      return level_.lower_->slab.find(slab.edge(upper) + level_.lower_->slab.step_offset);
     }
 
     Place place_in_upper(Vertex vertex) const {
-      const Slab<C>& slab = level_.upper_->slab;
-      return slab.place(slab.edges[vertex]);
+      Slab<C>& slab = level_.upper_->slab;
+      return slab.place(slab.edge(vertex));
     }
     // The samples of the step are those of the upper slab, if there is one.
     Place place_in_lower(Vertex vertex) const {
-      const Slab<C>& slab = level_.lower_->slab;
-      if (!slab.in_step(vertex)) return slab.place_of_upper_end(slab.edges[vertex]);
-      return level_.upper_ ? level_.upper_->slab.place(slab.edges[vertex] - slab.step_offset)
-                           : slab.place(slab.edges[vertex]);
+      Slab<C>& slab = level_.lower_->slab;
+      if (!slab.in_step(vertex)) return slab.place_of_upper_end(slab.edge(vertex));
+      return level_.upper_ ? level_.upper_->slab.place(slab.edge(vertex) - slab.step_offset)
+                           : slab.place(slab.edge(vertex));
     }
 
     bool is_critical(std::optional<Vertex> lower, std::optional<Vertex> upper) const {
       SideFinder<C> sides;
       Side before, after;
       if (lower) {
-        const Slab<C>& slab = level_.lower_->slab;
-        before = sides.find(slab, slab.stars.of(*lower), 1, Direction::before,
+        Slab<C>& slab = level_.lower_->slab;
+        before = sides.find(slab, slab.star(*lower), 1, Direction::before,
                             [&](Vertex vertex) { return vertex == *lower; });
       }
       if (upper) {
-        const Slab<C>& slab = level_.upper_->slab;
-        after = sides.find(slab, slab.stars.of(*upper), 0, Direction::after,
+        Slab<C>& slab = level_.upper_->slab;
+        after = sides.find(slab, slab.star(*upper), 0, Direction::after,
                            [&](Vertex vertex) { return vertex == *upper; });
       }
       return before.components.size() != 1 || after.components.size() != 1 || before.euler != after.euler;
@@ -322,10 +343,10 @@ class Level {
 
     const Level& level_;
     std::span<const Vertex> lower_vertices_, upper_vertices_;
-    std::vector<SimplexNumber> lower_star_, upper_star_;
   };
 
   Sweep<C>*lower_, *upper_;
+  std::shared_ptr<const StepPieces> pieces_;               // if they are the components
   std::vector<std::uint32_t> lower_places_, upper_places_; // of each vertex of the slabs, or none
   std::size_t vertex_count_ = 0;                           // of both, = places
   std::vector<bool> paired_;                               // places: the vertex is in both slabs

@@ -12,24 +12,27 @@ namespace hyperiso::track_detail {
 template <int C>
 class LinkTest {
  public:
-  explicit LinkTest(std::size_t vertices) : number_(vertices), seen_from_(vertices, UINT32_MAX) {}
-
-  // False also if the link is too large, or if there is a vertex with the same time next to it.
-  bool is_regular(const Slab<C>& slab, Vertex vertex) {
+  // Of neighbours with the same time those on smaller edges count as earlier (candidates.hpp says why). False
+  // also if the link is too large.
+  bool is_regular(Slab<C>& slab, Vertex vertex) {
     if constexpr (C > 4) return false; // links of 4-simplices have faces that are not counted here
-    const double time = slab.times[vertex];
     std::uint64_t below = 0, above = 0;
     int count = 0, simplices_below = 0, simplices_above = 0;
-    for (const SimplexNumber simplex : slab.stars.of(vertex)) {
+    const auto star = slab.star(vertex);
+    if (seen_from_.size() < slab.vertex_count()) {
+      seen_from_.resize(slab.vertex_count(), UINT32_MAX);
+      number_.resize(slab.vertex_count());
+    }
+    for (const SimplexNumber simplex : star) {
       std::uint64_t bits = 0;
       for (const Vertex other : slab.simplex(simplex)) {
         if (other == vertex) continue;
         if (seen_from_[other] != vertex) {
-          if (count == 64 || slab.times[other] == time) return false;
+          if (count == 64) return false;
           seen_from_[other] = vertex;
           number_[other] = static_cast<std::uint8_t>(count);
           neighbours_[static_cast<std::size_t>(count)] = 0;
-          (slab.times[other] < time ? below : above) |= std::uint64_t{1} << count++;
+          (slab.is_earlier(other, vertex) ? below : above) |= std::uint64_t{1} << count++;
         }
         bits |= std::uint64_t{1} << number_[other];
       }

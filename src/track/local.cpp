@@ -90,9 +90,9 @@ class LocalRun {
     auto slab = make_slab(samples, std::move(traced->mesh), missing);
     if (!slab) return slab.error();
     trace.slab = std::move(*slab);
-    for (Vertex vertex = 0; vertex < trace.slab->edges.size(); ++vertex) {
+    for (Vertex vertex = 0; vertex < trace.slab->vertex_count(); ++vertex) {
       if (!trace.slab->in_step(vertex)) continue;
-      const GridEdge edge = trace.slab->edges[vertex];
+      const GridEdge edge = trace.slab->edge(vertex);
       if (edge < trace.slab->step_offset)
         trace.lower.insert(edge);
       else
@@ -179,10 +179,7 @@ class LocalRun {
     for (std::int64_t number = first; number <= last; ++number) {
       const auto trace = traces_.find(number);
       Slab<D> slab;
-      if (trace != traces_.end())
-        slab = std::move(*trace->second.slab);
-      else
-        slab.stars.build({}, D, 0);
+      if (trace != traces_.end()) slab = std::move(*trace->second.slab);
       auto upper = std::make_unique<Sweep<D>>(std::move(slab), time(number), time(number + 1));
       if (lower || number == 0) Level<D>(lower.get(), upper.get()).resolve(time(number), builder_);
       upper->run(builder_);

@@ -27,7 +27,8 @@ struct Side {
 template <int C>
 class SideFinder {
  public:
-  // `star`: all simplices with a corner in the set, ascending. `contains(vertex)`: is it in the set.
+  // `star`: all simplices with a corner in the set, in the order of their cells. `contains(vertex)`: is it in
+  // the set.
   template <class Contains>
   Side find(const Slab<C>& slab, std::span<const SimplexNumber> star, double moment, Direction direction,
             Contains&& contains) {
@@ -37,9 +38,9 @@ class SideFinder {
     for (const SimplexNumber number : star) {
       Simplex members, others;
       for (const Vertex vertex : slab.simplex(number)) {
-        if (is_beyond(slab.times[vertex], moment, direction))
+        if (is_beyond(slab.time(vertex), moment, direction))
           others.add(vertex);
-        else if (slab.times[vertex] == moment && contains(vertex))
+        else if (slab.time(vertex) == moment && contains(vertex))
           members.add(vertex);
       }
       if (others.size == 0) continue;

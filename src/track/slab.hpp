@@ -2,10 +2,14 @@
 // The part of the surface M between two steps, as a simplicial complex with a time at each vertex.
 
 #include "core/sign.hpp"
-#include "hyperiso/extract.hpp"
+#include "track/number_map.hpp"
+#include "track/signed_cells.hpp"
 
 #include <algorithm>
+#include <bitset>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <span>
 
 namespace hyperiso::track_detail {
@@ -42,12 +46,24 @@ struct Place {
 
 // C corners a simplex. Times run from 0 at the lower step to 1 at the upper one: they are the weights of
 // crossings, so equal fractions of samples give equal times, and only what lies on a step has 0 or 1.
+//
+// A slab is a mesh that was handed over, or unfolds from the signs of its samples: then vertices and
+// simplices get their numbers when something first asks for what is around them, and numbers say nothing of
+// an order.
 template <int C>
-struct Slab {
-  Array<GridEdge> edges; // of the vertices, ascending, on the grid of these two steps
-  std::vector<double> times;
-  std::vector<Vertex> corners; // C of each simplex
-  Stars stars;
+class Slab {
+  struct NoCells; // of slabs that are always handed over
+  using Cells = std::conditional_t<(C <= 4), SignedCells<C>, NoCells>;
+
+ public:
+  Slab() { stars_.build({}, C, 0); }
+  // `edges`: of the vertices, ascending. Requires times and `corners`, C of each simplex.
+  Slab(Array<GridEdge> edges, std::vector<double> times, std::vector<Vertex> corners)
+      : edges_(edges.begin(), edges.end()), times_(std::move(times)), corners_(std::move(corners)) {
+    stars_.build(corners_, C, edges_.size());
+  }
+  explicit Slab(std::unique_ptr<Cells> cells) : cells_(std::move(cells)) {}
+
   bool has_missing = false; // samples
   bool ties_below = false;  // a vertex at the lower step that is not on an edge within it
   bool ties_above = false;  // the same at the upper step
@@ -56,21 +72,104 @@ struct Slab {
   std::function<Place(GridEdge)> place; // also of an edge within the lower step that M does not cross
   std::function<Place(GridEdge)> place_of_upper_end; // of a crossing at the upper end of an edge
 
-  // Whether the edge of the vertex lies within a step: such vertices are those of the surface at that step.
-  bool in_step(Vertex vertex) const { return !(edges[vertex] / row_length >> (C - 1) & 1); }
+  // How many have numbers.
+  std::size_t vertex_count() const { return edges_.size(); }
+  std::size_t simplex_count() const { return corners_.size() / C; }
 
-  std::size_t simplex_count() const { return corners.size() / C; }
-  std::span<const Vertex, C> simplex(SimplexNumber number) const {
-    return std::span<const Vertex, C>(corners.data() + std::size_t{number} * C, C);
+  GridEdge edge(Vertex vertex) const { return edges_[vertex]; }
+  double time(Vertex vertex) const { return times_[vertex]; }
+  // The order in which vertices are passed: by time, then edge.
+  bool is_earlier(Vertex a, Vertex b) const {
+    return times_[a] < times_[b] || (times_[a] == times_[b] && edges_[a] < edges_[b]);
+  }
+  // Whether the edge of the vertex lies within a step: such vertices are those of the surface at that step.
+  bool in_step(Vertex vertex) const { return !(edges_[vertex] / row_length >> (C - 1) & 1); }
+  // The vertex on an edge, if M has one there.
+  std::optional<Vertex> find(GridEdge edge) {
+    if (cells_) return cells_->crosses(edge) ? std::optional(vertex_on(edge)) : std::nullopt;
+    const auto place_of_edge = std::ranges::lower_bound(edges_, edge);
+    if (place_of_edge == edges_.end() || *place_of_edge != edge) return std::nullopt;
+    return static_cast<Vertex>(place_of_edge - edges_.begin());
+  }
+
+  std::array<Vertex, C> simplex(SimplexNumber number) const {
+    std::array<Vertex, C> corners;
+    std::copy_n(corners_.begin() + static_cast<std::ptrdiff_t>(std::size_t{number} * C), C, corners.begin());
+    return corners;
   }
   std::pair<double, double> time_range(SimplexNumber number) const {
-    double first = times[simplex(number)[0]], last = first;
-    for (const Vertex vertex : simplex(number)) {
-      first = std::min(first, times[vertex]);
-      last = std::max(last, times[vertex]);
+    const auto corners = simplex(number);
+    double first = times_[corners[0]], last = first;
+    for (const Vertex vertex : corners) {
+      first = std::min(first, times_[vertex]);
+      last = std::max(last, times_[vertex]);
     }
     return {first, last};
   }
+  // The simplices around a vertex, in the order of their cells.
+  std::span<const SimplexNumber> star(Vertex vertex) {
+    if (!cells_) return stars_.of(vertex);
+    if (unfolded_stars_.size() < edges_.size()) unfolded_stars_.resize(edges_.size());
+    if (unfolded_stars_[vertex].empty()) unfold_star(vertex);
+    return unfolded_stars_[vertex];
+  }
+
+  // By cell, and in the order of its table within one.
+  bool comes_before(SimplexNumber a, SimplexNumber b) const {
+    return cells_ && cell_of_[a] != cell_of_[b] ? cell_of_[a] < cell_of_[b] : a < b;
+  }
+
+  // Gives everything a number.
+  void unfold_all() {
+    if (cells_) cells_->for_each_cell([&](std::uint64_t cell) { unfold(cell); });
+  }
+
+ private:
+  Vertex vertex_on(GridEdge edge) {
+    const auto [number, is_new] = vertex_on_edge_.insert(edge, static_cast<std::uint32_t>(edges_.size()));
+    if (is_new) {
+      edges_.push_back(edge);
+      times_.push_back(cells_->time(edge));
+    }
+    return number;
+  }
+  // The first simplex of a cell and how many it has.
+  std::pair<SimplexNumber, std::size_t> unfold(std::uint64_t cell) {
+    const auto slots = cells_->simplices(cell); // D for each
+    const auto [first, is_new] = first_of_cell_.insert(cell, static_cast<std::uint32_t>(simplex_count()));
+    if (is_new) {
+      cell_of_.resize(cell_of_.size() + slots.size() / C, cell);
+      std::array<Vertex, 256> vertex; // of each slot
+      std::bitset<256> known;
+      for (const std::uint8_t slot : slots) {
+        if (!known[slot]) vertex[slot] = vertex_on(cells_->edge(cell, slot)), known[slot] = true;
+        corners_.push_back(vertex[slot]);
+      }
+    }
+    return {first, slots.size() / C};
+  }
+  void unfold_star(Vertex vertex) {
+    std::vector<SimplexNumber> star;
+    cells_->for_each_cell_around(edges_[vertex], [&](std::uint64_t cell) {
+      const auto [first, count] = unfold(cell);
+      for (auto number = first; number < first + count; ++number) {
+        const auto corners = simplex(number);
+        if (std::find(corners.begin(), corners.end(), vertex) != corners.end()) star.push_back(number);
+      }
+    });
+    if (unfolded_stars_.size() < edges_.size()) unfolded_stars_.resize(edges_.size());
+    unfolded_stars_[vertex] = std::move(star); // which stays where it is when others come
+  }
+
+  std::vector<GridEdge> edges_;
+  std::vector<double> times_;
+  std::vector<Vertex> corners_;
+  Stars stars_;
+
+  std::unique_ptr<Cells> cells_;
+  NumberMap vertex_on_edge_, first_of_cell_;
+  std::vector<std::uint64_t> cell_of_;                     // each simplex
+  std::vector<std::vector<SimplexNumber>> unfolded_stars_; // empty where not asked for
 };
 
 // Decodes grid edges of a slab and knows its samples.
@@ -123,33 +222,41 @@ class SlabSamples {
   double isovalue_;
 };
 
+// What both kinds of slabs know of their samples.
+template <class T, int D>
+void describe(Slab<D>& slab, const SlabSamples<T, D>& samples) {
+  slab.row_length = samples.row_length();
+  slab.step_offset = samples.step_offset();
+  slab.place = [samples](GridEdge edge) { return samples.place(edge); };
+  slab.place_of_upper_end = [samples](GridEdge edge) { return samples.place_of_upper_end(edge); };
+}
+
 // Takes over a surface between two steps. Requires its edges.
 template <class T, int D>
 Result<Slab<D>> make_slab(const SlabSamples<T, D>& samples, SimplexMesh<D>&& mesh, bool has_missing) {
   if (mesh.vertex_count() > UINT32_MAX || mesh.simplices.size() > UINT32_MAX)
     return Error{Code::out_of_memory, "the surface between two steps has more than 2^32 corners"};
-  Slab<D> slab;
-  slab.edges = std::move(mesh.edges);
-  slab.row_length = samples.row_length();
-  slab.step_offset = samples.step_offset();
-  slab.times.resize(slab.edges.size());
-  for (Vertex vertex = 0; vertex < slab.times.size(); ++vertex) {
-    const GridEdge edge = slab.edges[vertex];
-    if (slab.in_step(vertex)) {
-      slab.times[vertex] = edge < slab.step_offset ? 0 : 1;
+  std::vector<double> times(mesh.edges.size());
+  bool ties_below = false, ties_above = false;
+  const GridEdge upper_step = samples.step_offset();
+  for (Vertex vertex = 0; vertex < times.size(); ++vertex) {
+    const GridEdge edge = mesh.edges[vertex];
+    if (!(edge / samples.row_length() >> (D - 1) & 1)) {
+      times[vertex] = edge < upper_step ? 0 : 1;
     } else {
-      slab.times[vertex] = samples.time(edge);
-      slab.ties_below |= slab.times[vertex] == 0;
-      slab.ties_above |= slab.times[vertex] == 1;
+      times[vertex] = samples.time(edge);
+      ties_below |= times[vertex] == 0;
+      ties_above |= times[vertex] == 1;
     }
   }
-  slab.corners.resize(mesh.simplices.size());
-  for (std::size_t corner = 0; corner < slab.corners.size(); ++corner)
-    slab.corners[corner] = static_cast<Vertex>(mesh.simplices[corner]);
-  slab.stars.build(slab.corners, D, slab.edges.size());
+  std::vector<Vertex> corners(mesh.simplices.size());
+  for (std::size_t corner = 0; corner < corners.size(); ++corner)
+    corners[corner] = static_cast<Vertex>(mesh.simplices[corner]);
+  Slab<D> slab(std::move(mesh.edges), std::move(times), std::move(corners));
+  slab.ties_below = ties_below;
+  slab.ties_above = ties_above;
   slab.has_missing = has_missing;
-  slab.place = [samples](GridEdge edge) { return samples.place(edge); };
-  slab.place_of_upper_end = [samples](GridEdge edge) { return samples.place_of_upper_end(edge); };
+  describe(slab, samples);
   return slab;
 }
 

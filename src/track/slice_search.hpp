@@ -11,13 +11,13 @@ namespace hyperiso::track_detail {
 // The slice just after (or before) `moment`: its cells are the simplices that meet it.
 template <int C>
 struct Slice {
-  const Slab<C>& slab;
+  Slab<C>& slab;
   double moment;
   Direction direction;
 
   // Whether the vertex is on the later side of the slice.
   bool is_after(Vertex vertex) const {
-    return direction == Direction::after ? slab.times[vertex] > moment : slab.times[vertex] >= moment;
+    return direction == Direction::after ? slab.time(vertex) > moment : slab.time(vertex) >= moment;
   }
   bool meets(SimplexNumber number) const {
     bool before = false, after = false;
@@ -33,7 +33,7 @@ struct Slice {
       if (is_after(vertex)) after[count++] = vertex;
     for (const Vertex vertex : slab.simplex(number)) {
       if (is_after(vertex)) continue;
-      for (const SimplexNumber other : slab.stars.of(vertex)) {
+      for (const SimplexNumber other : slab.star(vertex)) {
         if (other == number) continue;
         const auto corners = slab.simplex(other);
         if (std::any_of(after.begin(), after.begin() + static_cast<std::ptrdiff_t>(count), [&](Vertex v) {
@@ -58,7 +58,6 @@ class PieceSearch {
   // `seeds`: for each place some simplices that meet the slice and are connected near it. The pieces come in
   // the order of their first seeds.
   std::vector<Piece> find(const Slice<C>& slice, const std::vector<std::vector<SimplexNumber>>& seeds) {
-    if (owner_.empty()) owner_.resize(slice.slab.simplex_count());
     ++search_;
     UnionFind groups(seeds.size());
     std::vector<std::vector<SimplexNumber>> found(seeds.size());
@@ -96,6 +95,7 @@ class PieceSearch {
  private:
   void claim(SimplexNumber simplex, std::size_t seed, UnionFind& groups,
              std::vector<std::vector<SimplexNumber>>& found) {
+    if (simplex >= owner_.size()) owner_.resize(2 * std::size_t{simplex} + 64);
     Owner& owner = owner_[simplex];
     if (owner.search == search_) return groups.unite(owner.seed, seed);
     owner = {search_, static_cast<std::uint32_t>(seed)};
@@ -136,7 +136,7 @@ class RimCounter {
       for (const Vertex before : facet)
         for (const Vertex after : facet) {
           if (slice.is_after(before) || !slice.is_after(after)) continue;
-          for (const SimplexNumber number : slice.slab.stars.of(before))
+          for (const SimplexNumber number : slice.slab.star(before))
             for_each_rim_facet(slice, number, [&](const Facet& other) {
               if (contains(other, before) && contains(other, after) && seen.insert(other).second)
                 waiting.push_back(other);
@@ -163,9 +163,9 @@ class RimCounter {
     }
   }
 
-  static int simplices_with(const Slab<4>& slab, const Facet& facet) {
+  static int simplices_with(Slab<4>& slab, const Facet& facet) {
     int count = 0;
-    for (const SimplexNumber number : slab.stars.of(facet[0])) {
+    for (const SimplexNumber number : slab.star(facet[0])) {
       const auto corners = slab.simplex(number);
       const auto is_corner = [&](Vertex v) {
         return std::find(corners.begin(), corners.end(), v) != corners.end();

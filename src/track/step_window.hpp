@@ -28,16 +28,8 @@ class StepWindow {
       for (std::int64_t x = 0; x < view.grid.axes[0].count; ++x) *to++ = row[x * view.strides[0]];
       for (int axis = 1; axis < D && ++index[axis] == view.grid.axes[axis].count; ++axis) index[axis] = 0;
     }
-    const std::span<const T> read(samples_.data() + step % 2 * step_samples_,
-                                  static_cast<std::size_t>(step_samples_));
-    bool missing = false;
-    for (const T sample : read) missing |= is_missing(sample);
-    has_missing_[step % 2] = missing;
     return {};
   }
-  // Whether a sample of the two steps is missing.
-  bool has_missing() const { return has_missing_[0] || has_missing_[1]; }
-
   // Steps `first` and `first` + 1, both read.
   FieldView<const T, D> slab(std::int64_t first) const {
     FieldView<const T, D> view;
@@ -51,13 +43,16 @@ class StepWindow {
     view.strides[D - 1] = first % 2 == 0 ? step_samples_ : -step_samples_;
     return view;
   }
+  // A step that was read.
+  FieldView<const T, D - 1> step(std::int64_t number) const {
+    return slab(number > 0 ? number - 1 : 0).at_index(D - 1, number > 0 ? 1 : 0);
+  }
 
  private:
   StepSource& source_;
   std::vector<Axis> axes_;
   std::int64_t step_samples_;
   std::vector<T> samples_; // even steps, then odd ones
-  std::array<bool, 2> has_missing_{};
 };
 
 } // namespace hyperiso::track_detail

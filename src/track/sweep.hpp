@@ -5,25 +5,35 @@
 #include "track/graph_builder.hpp"
 #include "track/link_test.hpp"
 #include "track/slice_search.hpp"
+#include "track/step_pieces.hpp"
 
 #include <map>
 #include <optional>
 #include <set>
+#include <unordered_map>
 
 namespace hyperiso::track_detail {
 
-// A strand is a component of the slices, followed through the slab; every simplex that the current slice
-// meets is labelled with the strand it belongs to. Merging strands unites their labels; a strand that splits
-// has all pieces but the largest relabelled.
+// A strand is a component of the slices, followed through the slab. Merging strands unites them; of a strand
+// that splits, all pieces but the largest get new ones. Only the simplices around events are labelled with
+// their strands, from the moment of the event on: others are on the strand of what they come from, found by
+// going down along the surface to such a label or to the lower step.
 template <int C>
 class Sweep {
  public:
+  // A slab that was handed over whole.
   Sweep(Slab<C> slab_, double lower_time, double upper_time)
-      : slab(std::move(slab_)), lower_time_(lower_time), upper_time_(upper_time), strands_(slab.times.size()),
-        labels_(slab.simplex_count()), link_(slab.times.size()) {
+      : slab(std::move(slab_)), lower_time_(lower_time), upper_time_(upper_time),
+        strands_(slab.vertex_count()) {
     if (!plain_below()) part_ways_at_lower_step();
     unite_at_lower_step();
   }
+  // One that unfolds. `pieces`: of the surface at the lower step, each a strand. `candidates`: the edges of
+  // all vertices strictly inside at which something may happen.
+  Sweep(Slab<C> slab_, double lower_time, double upper_time, std::shared_ptr<const StepPieces> pieces,
+        std::vector<GridEdge> candidates)
+      : slab(std::move(slab_)), lower_time_(lower_time), upper_time_(upper_time), pieces_(std::move(pieces)),
+        candidates_(std::move(candidates)), strands_(pieces_->count()) {}
 
   Slab<C> slab;
 
@@ -32,25 +42,53 @@ class Sweep {
   bool plain_below() const { return !slab.has_missing && !slab.ties_below; }
   bool plain_above() const { return !slab.has_missing && !slab.ties_above; }
 
-  // Requires plain_below() and a vertex at the lower step.
-  std::uint64_t strand_at_lower_step(Vertex vertex) { return strands_.find(vertex); }
+  // Requires plain_below() and a vertex on an edge within the lower step.
+  std::uint64_t strand_at_lower_step(Vertex vertex) {
+    return strands_.find(pieces_ ? pieces_->piece_at(slab.edge(vertex)) : vertex);
+  }
   std::uint64_t strand_count() const { return strands_.size(); }
-  std::uint64_t strand_of(SimplexNumber simplex) { return strands_.find(labels_[simplex]); }
   std::int64_t arc_of(std::uint64_t strand) const { return arcs_.at(strand); }
   void set_arc(std::uint64_t strand, std::int64_t arc) { arcs_[strand] = arc; }
 
+  // Of what a simplex has just before `moment`. Requires that it has something there and that all is passed
+  // that comes before.
+  std::uint64_t strand_of(SimplexNumber simplex, double moment) {
+    way_.clear();
+    std::uint64_t strand = 0;
+    for (;;) {
+      if (const auto label = label_before(simplex, moment)) {
+        strand = *label;
+        break;
+      }
+      const Vertex lowest = lowest_corner(simplex);
+      if (slab.time(lowest) == 0) {
+        strand = strand_at_bottom(simplex, lowest);
+        break;
+      }
+      if (below_.size() <= lowest) below_.resize(2 * slab.vertex_count(), no_strand);
+      if (below_[lowest] != no_strand) {
+        strand = below_[lowest];
+        break;
+      }
+      way_.push_back(lowest);
+      moment = slab.time(lowest);
+      simplex = simplex_before(lowest);
+    }
+    for (const Vertex vertex : way_) below_[vertex] = static_cast<std::uint32_t>(strand);
+    return strands_.find(strand);
+  }
+  // At the upper step.
+  std::uint64_t strand_below(Vertex vertex) { return strand_of(simplex_before(vertex), slab.time(vertex)); }
+
   // Goes through the inside of the slab. Requires an arc for each strand at the lower step.
   void run(GraphBuilder& graph) {
-    std::vector<std::pair<double, Vertex>> by_time;
-    for (Vertex vertex = 0; vertex < slab.times.size(); ++vertex)
-      if (slab.times[vertex] > 0 && slab.times[vertex] < 1) by_time.emplace_back(slab.times[vertex], vertex);
-    std::ranges::sort(by_time);
-    std::vector<Vertex> inner;
-    for (const auto& [time, vertex] : by_time) inner.push_back(vertex);
-    for (std::size_t begin = 0; begin < inner.size();) {
+    std::vector<Vertex> vertices = inner_vertices();
+    std::erase_if(vertices, [&](Vertex vertex) { return link_.is_regular(slab, vertex); });
+    std::ranges::sort(vertices, [&](Vertex a, Vertex b) { return slab.is_earlier(a, b); });
+    for (std::size_t begin = 0; begin < vertices.size();) {
       std::size_t end = begin + 1;
-      while (end < inner.size() && slab.times[inner[end]] == slab.times[inner[begin]]) ++end;
-      pass_moment(std::span(inner).subspan(begin, end - begin), graph);
+      while (end < vertices.size() && slab.time(vertices[end]) == slab.time(vertices[begin])) ++end;
+      pass_moment(std::span(vertices).subspan(begin, end - begin), graph);
       begin = end;
     }
   }
@@ -59,7 +97,7 @@ class Sweep {
   // Vertices with equal time joined by edges, and the slices around them.
   struct Cluster {
     std::vector<Vertex> vertices;
-    std::vector<SimplexNumber> star; // all simplices with a corner in it, ascending
+    std::vector<SimplexNumber> star; // all simplices with a corner in it, in the order of their cells
     Side before, after;
 
     bool regular() const {
@@ -70,9 +108,9 @@ class Sweep {
   // Just after the lower step, simplices belong together that share an edge from a vertex there to one above.
   // The strand of a vertex has its number; where its edges fall into several pieces, the others get new ones.
   void part_ways_at_lower_step() {
-    for (Vertex vertex = 0; vertex < slab.times.size(); ++vertex) {
-      if (slab.times[vertex] != 0) continue;
-      const Side after = sides_.find(slab, slab.stars.of(vertex), 0, Direction::after,
+    for (Vertex vertex = 0; vertex < slab.vertex_count(); ++vertex) {
+      if (slab.time(vertex) != 0) continue;
+      const Side after = sides_.find(slab, slab.star(vertex), 0, Direction::after,
                                      [&](Vertex other) { return other == vertex; });
       for (std::size_t piece = 1; piece < after.components.size(); ++piece) {
         const std::uint64_t strand = strands_.add();
@@ -82,64 +120,85 @@ class Sweep {
   }
 
   void unite_at_lower_step() {
-    for (SimplexNumber simplex = 0; simplex < labels_.size(); ++simplex) {
+    for (SimplexNumber simplex = 0; simplex < slab.simplex_count(); ++simplex) {
       const auto corners = slab.simplex(simplex);
-      if (std::all_of(corners.begin(), corners.end(), [&](Vertex v) { return slab.times[v] == 0; })) continue;
+      if (std::all_of(corners.begin(), corners.end(), [&](Vertex v) { return slab.time(v) == 0; })) continue;
       std::optional<std::uint64_t> first;
       for (const Vertex vertex : corners) {
-        if (slab.times[vertex] != 0) continue;
-        std::uint64_t strand = vertex;
-        if (!parted_.empty())
-          if (const auto parted = parted_.find({vertex, simplex}); parted != parted_.end())
-            strand = parted->second;
+        if (slab.time(vertex) != 0) continue;
+        const std::uint64_t strand = strand_at_bottom(simplex, vertex);
         if (first)
           strands_.unite(*first, strand);
         else
           first = strand;
       }
-      if (first) labels_[simplex] = static_cast<SimplexNumber>(*first);
     }
+  }
+
+  // Of a simplex with a vertex at the lower step and one above.
+  std::uint64_t strand_at_bottom(SimplexNumber simplex, Vertex vertex) const {
+    if (pieces_) return pieces_->piece_at(slab.edge(vertex));
+    if (!parted_.empty())
+      if (const auto parted = parted_.find({vertex, simplex}); parted != parted_.end()) return parted->second;
+    return vertex;
+  }
+
+  Vertex lowest_corner(SimplexNumber simplex) const {
+    const auto corners = slab.simplex(simplex);
+    return *std::ranges::min_element(corners, {}, [&](Vertex vertex) { return slab.time(vertex); });
+  }
+
+  // A simplex that has something just before a vertex, or before others with the same time that edges join
+  // it with. Requires that there is one.
+  SimplexNumber simplex_before(Vertex vertex) {
+    const double time = slab.time(vertex);
+    std::vector<Vertex> cluster{vertex};
+    for (std::size_t next = 0;; ++next) {
+      for (const SimplexNumber simplex : slab.star(cluster[next]))
+        if (slab.time_range(simplex).first < time) return simplex;
+      for (const SimplexNumber simplex : slab.star(cluster[next]))
+        for (const Vertex other : slab.simplex(simplex))
+          if (slab.time(other) == time && std::ranges::find(cluster, other) == cluster.end())
+            cluster.push_back(other);
+    }
+  }
+
+  // The last label that a simplex got before a moment.
+  std::optional<std::uint64_t> label_before(SimplexNumber simplex, double moment) const {
+    const auto found = labels_.find(simplex);
+    if (found == labels_.end()) return std::nullopt;
+    for (auto label = found->second.rbegin(); label != found->second.rend(); ++label)
+      if (label->first < moment) return label->second;
+    return std::nullopt;
+  }
+  void label(const std::vector<SimplexNumber>& simplices, double moment, std::uint64_t strand) {
+    for (const SimplexNumber simplex : simplices) labels_[simplex].emplace_back(moment, strand);
   }
 
   void pass_moment(std::span<const Vertex> vertices, GraphBuilder& graph) {
-    const double moment = slab.times[vertices[0]];
-    std::vector<Vertex> others;
-    for (const Vertex vertex : vertices)
-      if (link_.is_regular(slab, vertex))
-        pass_regular(vertex);
-      else
-        others.push_back(vertex);
-    if (others.empty()) return;
+    const double moment = slab.time(vertices[0]);
     std::vector<Cluster> critical;
-    for (Cluster& cluster : clusters(others)) {
+    for (Cluster& cluster : clusters(vertices)) {
       describe(cluster, moment);
-      if (cluster.regular())
-        label(cluster.after.components[0], strand_of(cluster.before.components[0][0]));
-      else
-        critical.push_back(std::move(cluster));
+      if (!cluster.regular()) critical.push_back(std::move(cluster));
     }
-    for (const auto& level_component : level_components(critical))
+    for (const auto& level_component : level_components(critical, moment))
       pass_node(level_component, critical, moment, graph);
   }
 
-  // What begins at a regular vertex belongs to what ends there.
-  void pass_regular(Vertex vertex) {
-    std::optional<std::uint64_t> strand;
-    const auto is_new = [&](SimplexNumber simplex) {
-      const auto corners = slab.simplex(simplex);
-      return std::none_of(corners.begin(), corners.end(),
-                          [&](Vertex v) { return slab.times[v] < slab.times[vertex]; });
-    };
-    for (const SimplexNumber simplex : slab.stars.of(vertex))
-      if (!is_new(simplex)) {
-        strand = strand_of(simplex);
-        break;
-      }
-    for (const SimplexNumber simplex : slab.stars.of(vertex))
-      if (is_new(simplex)) labels_[simplex] = static_cast<SimplexNumber>(*strand);
+  // Those strictly inside the slab, or the candidates among them.
+  std::vector<Vertex> inner_vertices() {
+    std::vector<Vertex> vertices;
+    if (pieces_) {
+      for (const GridEdge edge : candidates_) vertices.push_back(*slab.find(edge));
+    } else {
+      for (Vertex vertex = 0; vertex < slab.vertex_count(); ++vertex)
+        if (slab.time(vertex) > 0 && slab.time(vertex) < 1) vertices.push_back(vertex);
+    }
+    return vertices;
   }
 
-  std::vector<Cluster> clusters(std::span<const Vertex> vertices) const {
+  std::vector<Cluster> clusters(std::span<const Vertex> vertices) {
     std::vector<Cluster> result;
     std::set<Vertex> seen;
     for (const Vertex vertex : vertices) {
@@ -147,21 +206,22 @@ class Sweep {
       std::vector<Vertex>& cluster = result.emplace_back().vertices;
       cluster.push_back(vertex);
       for (std::size_t next = 0; next < cluster.size(); ++next)
-        for (const SimplexNumber simplex : slab.stars.of(cluster[next]))
+        for (const SimplexNumber simplex : slab.star(cluster[next]))
           for (const Vertex other : slab.simplex(simplex))
-            if (slab.times[other] == slab.times[vertex] && seen.insert(other).second)
-              cluster.push_back(other);
+            if (slab.time(other) == slab.time(vertex) && seen.insert(other).second) cluster.push_back(other);
+      std::ranges::sort(cluster, {}, [&](Vertex v) { return slab.edge(v); });
     }
+    std::ranges::sort(result, {}, [&](const Cluster& cluster) { return slab.edge(cluster.vertices[0]); });
     return result;
   }
 
   void describe(Cluster& cluster, double moment) {
     for (const Vertex vertex : cluster.vertices) {
-      const auto star = slab.stars.of(vertex);
+      const auto star = slab.star(vertex);
       cluster.star.insert(cluster.star.end(), star.begin(), star.end());
     }
     if (cluster.vertices.size() > 1) {
-      std::ranges::sort(cluster.star);
+      std::ranges::sort(cluster.star, [&](auto a, auto b) { return slab.comes_before(a, b); });
       cluster.star.erase(std::unique(cluster.star.begin(), cluster.star.end()), cluster.star.end());
     }
     const auto contains = [](Vertex) { return true; }; // what has this time next to the cluster is part of it
@@ -170,12 +230,14 @@ class Sweep {
   }
 
   // Critical clusters that strands just before connect: numbers in `critical`.
-  std::vector<std::vector<std::size_t>> level_components(const std::vector<Cluster>& critical) {
+  std::vector<std::vector<std::size_t>> level_components(const std::vector<Cluster>& critical,
+                                                         double moment) {
     UnionFind united(critical.size());
     std::map<std::uint64_t, std::size_t> cluster_of_strand;
     for (std::size_t cluster = 0; cluster < critical.size(); ++cluster)
       for (const auto& component : critical[cluster].before.components)
-        united.unite(cluster, cluster_of_strand.try_emplace(strand_of(component[0]), cluster).first->second);
+        united.unite(cluster,
+                     cluster_of_strand.try_emplace(strand_of(component[0], moment), cluster).first->second);
     std::map<std::uint64_t, std::vector<std::size_t>> components;
     for (std::size_t cluster = 0; cluster < critical.size(); ++cluster)
       components[united.find(cluster)].push_back(cluster);
@@ -192,11 +254,11 @@ class Sweep {
     PlaceSum place_of_clusters, place_of_vertices;
     for (const std::size_t number : level_component) {
       const Cluster& cluster = critical[number];
-      for (const auto& component : cluster.before.components) before.insert(strand_of(component[0]));
+      for (const auto& component : cluster.before.components) before.insert(strand_of(component[0], moment));
       seeds.insert(seeds.end(), cluster.after.components.begin(), cluster.after.components.end());
       change.euler += cluster.after.euler - cluster.before.euler;
       PlaceSum place;
-      for (const Vertex vertex : cluster.vertices) place.add(slab.place(slab.edges[vertex]));
+      for (const Vertex vertex : cluster.vertices) place.add(slab.place(slab.edge(vertex)));
       place_of_clusters.add({place.mean(), place.all_on_wall()});
     }
     const auto pieces = search_.find({slab, moment, Direction::after}, seeds);
@@ -206,7 +268,7 @@ class Sweep {
     std::vector<std::int64_t> arcs_before;
     for (const std::uint64_t strand : before) arcs_before.push_back(arc_of(strand));
     std::ranges::sort(arcs_before);
-    const std::vector<std::uint64_t> after = relabel(pieces, before);
+    const std::vector<std::uint64_t> after = relabel(pieces, before, moment);
 
     const auto type =
         type_of_node(before.size(), after.size(), place_of_clusters.all_on_wall(), change, C == 4);
@@ -223,7 +285,7 @@ class Sweep {
 
   // One strand for each piece. What was not searched to its end keeps the labels it has, united.
   std::vector<std::uint64_t> relabel(const std::vector<typename PieceSearch<C>::Piece>& pieces,
-                                     const std::set<std::uint64_t>& before) {
+                                     const std::set<std::uint64_t>& before, double moment) {
     std::vector<std::uint64_t> after;
     for (const auto& piece : pieces) {
       std::uint64_t strand = 0;
@@ -233,18 +295,14 @@ class Sweep {
         for (const std::uint64_t other : before) strands_.unite(*before.begin(), other);
         strand = strands_.find(*before.begin());
       }
-      label(piece.simplices, strand);
+      label(piece.simplices, moment, strand);
       after.push_back(strand);
     }
     return after;
   }
 
-  void label(const std::vector<SimplexNumber>& simplices, std::uint64_t strand) {
-    for (const SimplexNumber simplex : simplices) labels_[simplex] = static_cast<SimplexNumber>(strand);
-  }
-
   std::int64_t change_of_rims(const std::vector<std::size_t>& level_component,
-                              const std::vector<Cluster>& critical, double moment) const {
+                              const std::vector<Cluster>& critical, double moment) {
     if constexpr (C == 4) {
       std::vector<SimplexNumber> before, after;
       for (const std::size_t number : level_component) {
@@ -261,8 +319,13 @@ class Sweep {
   }
 
   double lower_time_, upper_time_;
+  std::shared_ptr<const StepPieces> pieces_; // at the lower step, of a slab that unfolds
+  std::vector<GridEdge> candidates_;         // the same
   UnionFind strands_;
-  std::vector<SimplexNumber> labels_;
+  std::unordered_map<SimplexNumber, std::vector<std::pair<double, std::uint64_t>>> labels_; // from a time on
+  static constexpr std::uint32_t no_strand = UINT32_MAX;
+  std::vector<std::uint32_t> below_; // strand just before each vertex, where known
+  std::vector<Vertex> way_;
   std::map<std::pair<Vertex, SimplexNumber>, std::uint64_t> parted_; // at the lower step
   std::map<std::uint64_t, std::int64_t> arcs_;
   SideFinder<C> sides_;

@@ -33,6 +33,7 @@
 #include "track/links.hpp"
 #include "track/step_features.hpp"
 #include "track/step_window.hpp"
+#include "track/surface_steps.hpp"
 #include "track/tracks.hpp"
 
 #include <memory>
@@ -47,23 +48,22 @@ template <class T, int D>
 class TrackingRun {
  public:
   TrackingRun(StepSource& source, double isovalue, const TrackOptions& options)
-      : options_(options), isovalue_(isovalue), window_(source), builder_(graph_), links_(graph_) {
+      : options_(options), isovalue_(isovalue), window_(source), steps_(isovalue, options.extraction),
+        builder_(graph_), links_(graph_) {
     graph_.axes = source.info().axes;
     graph_.steps = graph_.axes.back().count;
     graph_.isovalue = isovalue;
   }
 
   Result<TrackingGraph> run() {
-    if (const Status read = window_.read(0); !read) return read.error();
     std::unique_ptr<Sweep<D>> lower;
+    if (const Status read = read_step(0); !read) return read.error();
     for (std::int64_t step = 0; step + 1 < graph_.steps; ++step) {
-      if (const Status read = window_.read(step + 1); !read) return read.error();
+      if (const Status read = read_step(step + 1); !read) return read.error();
       const SlabSamples<T, D> samples(window_.slab(step), isovalue_);
-      auto mesh = extract(samples.field(), isovalue_, slab_options());
-      if (!mesh) return mesh.error();
-      auto slab = make_slab(samples, std::move(*mesh), window_.has_missing());
-      if (!slab) return slab.error();
-      auto upper = std::make_unique<Sweep<D>>(std::move(*slab), time(step), time(step + 1));
+      auto made = steps_.between(samples, this_step_, next_step_, time(step), time(step + 1));
+      if (!made) return made.error();
+      std::unique_ptr<Sweep<D>> upper = std::move(*made);
       if (const Status passed = pass_step(step, lower.get(), upper.get()); !passed) return passed.error();
       upper->run(builder_);
       lower = std::move(upper);
@@ -72,6 +72,7 @@ class TrackingRun {
                                         static_cast<double>(graph_.steps - 1)))
         return Error{Code::cancelled, "tracking was cancelled"};
     }
+    this_step_ = next_step_;
     if (const Status passed = pass_step(graph_.steps - 1, lower.get(), nullptr); !passed)
       return passed.error();
     assign_tracks(graph_);
@@ -81,18 +82,19 @@ class TrackingRun {
  private:
   double time(std::int64_t step) const { return graph_.axes.back().coordinate(step); }
 
-  ExtractOptions slab_options() const {
-    ExtractOptions options = options_.extraction;
-    options.keep_edges = true;
-    options.precision = Precision::f32; // of positions that nobody reads
-    options.progress = {};
-    return options;
+  Status read_step(std::int64_t step) {
+    this_step_ = std::move(next_step_);
+    if (const Status read = window_.read(step); !read) return read;
+    auto made = steps_.step(window_.step(step));
+    if (!made) return made.error();
+    next_step_ = std::move(*made);
+    return {};
   }
 
   using StepRows = StepFeatures<T, D - 1>;
 
   Status pass_step(std::int64_t step, Sweep<D>* lower, Sweep<D>* upper) {
-    Level<D> level(lower, upper);
+    Level<D> level(lower, upper, this_step_.pieces());
     links_.pass_events();
     level.resolve(time(step), builder_);
     if (!options_.measure_features) return {};
@@ -100,12 +102,8 @@ class TrackingRun {
     const bool last = !upper;
     const SlabSamples<T, D> samples(window_.slab(last ? step - 1 : step), isovalue_);
     const auto view = samples.field().at_index(D - 1, last ? 1 : 0);
-    ExtractOptions extraction = slab_options();
-    extraction.precision = Precision::f64;
-    const auto surface = extract(view, isovalue_, extraction);
-    if (!surface) return surface.error();
-    auto rows = std::make_unique<StepRows>(view, samples, last, isovalue_, extraction, level);
-    add_features(step, rows->measure(*surface, level));
+    auto rows = std::make_unique<StepRows>(view, samples, last, isovalue_, options_.extraction, level);
+    add_features(step, rows->measure(this_step_.surface->mesh, level));
     auto& pieces = graph_.pieces.emplace_back();
     for (const SurfacePiece& piece : rows->pieces())
       if (piece.row != SIZE_MAX)
@@ -156,6 +154,8 @@ class TrackingRun {
   const TrackOptions& options_;
   double isovalue_;
   StepWindow<T, D> window_;
+  SurfaceSteps<T, D> steps_;
+  typename SurfaceSteps<T, D>::Step this_step_, next_step_;
   TrackingGraph graph_;
   GraphBuilder builder_;
   LinkTracer links_;

@@ -1,0 +1,137 @@
+#pragma once
+// The vertices between two steps at which something may happen.
+
+#include "track/cell_links.hpp"
+#include "track/crossings.hpp"
+
+namespace hyperiso::track_detail {
+
+// Passes over the cells with crossings along time and lists the edges of those crossings that the cells
+// around them do not tell to be regular (cell_links.hpp). Of equal times the one on the smaller edge counts
+// as earlier. That changes nothing: if all vertices of a cluster with one time are regular when passed one
+// after the other, nothing happens when they are passed at once.
+template <int D>
+class CandidateSearch {
+ public:
+  explicit CandidateSearch(const MarchTable<D>& table) : links_(table) {
+    for (unsigned present = 0; present < regular_.size(); ++present)
+      for (unsigned earlier = 0; earlier < 64; ++earlier)
+        regular_[present][earlier] = poles_are_regular(present, earlier, space);
+  }
+
+  std::vector<GridEdge> find(const Crossings<D>& crossings) {
+    crossings_ = &crossings;
+    poles_.assign(crossings.count(), 0);
+    const auto& dims = crossings.dims();
+    const std::size_t row_length = static_cast<std::size_t>(dims[1]);
+    for (std::size_t row = 0; row < crossings.rows(); ++row) {
+      if (static_cast<std::int64_t>(row % row_length) == dims[1] - 1) continue;
+      if (D == 4 && row + row_length >= crossings.rows()) break;
+      pass_cells(row);
+    }
+    return list();
+  }
+
+ private:
+  static constexpr int space = D - 1;
+  static constexpr unsigned lines = 1u << (space - 1); // rows of samples beside a row of cells
+  static constexpr unsigned columns = CellLinks<D>::columns;
+
+  std::size_t row_of_line(std::size_t row, unsigned line) const {
+    return row + (line & 1) + (line >> 1) * static_cast<std::size_t>(crossings_->dims()[1]);
+  }
+
+  // The row of cells above sample row `row`.
+  void pass_cells(std::size_t row) {
+    bool any = false;
+    std::array<std::size_t, lines> next{}; // number of the first crossing not yet passed
+    for (unsigned line = 0; line < lines; ++line) {
+      const std::size_t number = row_of_line(row, line);
+      any |= crossings_->any(number);
+      next[line] = crossings_->first(number);
+    }
+    if (!any) return;
+    const auto cells = static_cast<std::size_t>(crossings_->dims()[0] - 1);
+    const std::size_t words = crossings_->lower().words();
+    const auto changes = [&](std::size_t word) {
+      std::uint64_t changed = 0;
+      for (unsigned line = 0; line < lines; ++line)
+        changed |= crossings_->changes(row_of_line(row, line), word);
+      return changed;
+    };
+    std::uint64_t here = changes(0);
+    for (std::size_t word = 0; word < words; ++word) {
+      const std::uint64_t behind = word + 1 < words ? changes(word + 1) : 0;
+      std::uint64_t touched = here | here >> 1 | behind << 63;
+      for (; touched != 0; touched &= touched - 1) {
+        const std::size_t x = 64 * word + static_cast<std::size_t>(std::countr_zero(touched));
+        if (x < cells) pass_cell(row, x, next);
+      }
+      here = behind;
+    }
+  }
+
+  void pass_cell(std::size_t row, std::size_t x, std::array<std::size_t, lines>& next) {
+    std::uint32_t code = 0;
+    unsigned crossed = 0;
+    std::array<std::size_t, columns> number{}; // of the crossing at each corner
+    for (unsigned line = 0; line < lines; ++line) {
+      const std::size_t samples = row_of_line(row, line);
+      const unsigned below = pair_at(crossings_->lower().row(samples), x),
+                     above = pair_at(crossings_->upper().row(samples), x), changed = below ^ above;
+      code |= (below & 1) << line | (above & 1) << (line + lines);
+      code |= (below >> 1) << (line + 2 * lines) | (above >> 1) << (line + 3 * lines);
+      crossed |= changed << (2 * line);
+      number[2 * line] = next[line];
+      number[2 * line + 1] = next[line] += changed & 1;
+    }
+    for (unsigned rest = crossed; rest != 0; rest &= rest - 1) {
+      const auto corner = static_cast<unsigned>(std::countr_zero(rest));
+      const double time = crossings_->time(number[corner]);
+      unsigned earlier = 0;
+      for (unsigned others = crossed & ~(1u << corner); others != 0; others &= others - 1) {
+        const auto other = static_cast<unsigned>(std::countr_zero(others));
+        const double other_time = crossings_->time(number[other]);
+        earlier |= static_cast<unsigned>(other_time < time || (other_time == time && other < corner))
+                   << other;
+      }
+      poles_[number[corner]] |= links_.poles(code, corner, earlier);
+    }
+  }
+
+  static unsigned pair_at(const std::uint64_t* words, std::size_t x) {
+    const std::uint64_t low = words[x / 64] >> (x % 64);
+    return static_cast<unsigned>((x % 64 == 63 ? low | words[x / 64 + 1] << 1 : low) & 3);
+  }
+
+  std::vector<GridEdge> list() const {
+    std::vector<GridEdge> edges;
+    std::size_t number = 0;
+    std::array<std::int64_t, space> index{};
+    for (std::size_t row = 0; row < crossings_->rows(); ++row) {
+      unsigned present = 3;
+      for (int axis = 1; axis < space; ++axis) present |= sides(axis, index[axis]) << (2 * axis);
+      for (std::size_t word = 0; word < crossings_->lower().words(); ++word)
+        for (std::uint64_t changed = crossings_->changes(row, word); changed != 0; changed &= changed - 1) {
+          const std::size_t x = 64 * word + static_cast<std::size_t>(std::countr_zero(changed));
+          const unsigned all = (present & ~3u) | sides(0, static_cast<std::int64_t>(x));
+          const unsigned poles = poles_[number++];
+          if ((poles & CellLinks<D>::not_simple) || !regular_[all][poles])
+            edges.push_back(crossings_->edge(row, x));
+        }
+      for (int axis = 1; axis < space && ++index[axis] == crossings_->dims()[axis]; ++axis) index[axis] = 0;
+    }
+    return edges;
+  }
+  // Which poles along an axis lie within the domain: bit 0 the one downwards.
+  unsigned sides(int axis, std::int64_t index) const {
+    return (index > 0 ? 1u : 0u) | (index + 1 < crossings_->dims()[axis] ? 2u : 0u);
+  }
+
+  CellLinks<D> links_;
+  std::array<std::array<bool, 64>, 64> regular_{};
+  const Crossings<D>* crossings_ = nullptr;
+  std::vector<std::uint8_t> poles_; // of each crossing that are earlier, or not_simple
+};
+
+} // namespace hyperiso::track_detail

@@ -1,0 +1,152 @@
+#pragma once
+// The link of a vertex on an edge along time, cell by cell, from tables.
+
+#include "core/union_find.hpp"
+#include "extract/march_table.hpp"
+
+#include <optional>
+
+namespace hyperiso::track_detail {
+
+// Around an edge along time that the surface of the method `hull` (or `component`) crosses, the faces of the
+// grid part the link of the crossing as the faces of space part an octahedron (a square, in two dimensions):
+// a *pole* in each square that the edge bounds, which is the other vertex that the surface has on its rim, an
+// arc from pole to pole in each 3-cube, a disk in each cell. Vertices of the link are earlier or later than
+// the crossing. If both change no more than once along each arc and each disk is parted into no more than two
+// pieces, then the link is parted as the labels of its poles say.
+template <int D>
+class CellLinks {
+ public:
+  static constexpr int space = D - 1;
+  static constexpr unsigned columns = 1u << space; // edges along time of a cell, by their corner of space
+  static constexpr std::uint8_t not_simple = 0x80;
+
+  explicit CellLinks(const MarchTable<D>& table) : table_(table), known_(std::size_t{1} << 15) {
+    for (unsigned upper = 1; upper < 1u << D; ++upper)
+      for (int axis = 0; axis < D; ++axis)
+        if (upper >> axis & 1) {
+          const unsigned lower = upper & ~(1u << axis);
+          ends_[Edges::slot(lower, upper)] = {static_cast<std::uint8_t>(lower),
+                                              static_cast<std::uint8_t>(upper)};
+        }
+  }
+
+  // The poles of the edge at `corner` that are earlier, as bits 2 axis + (1 if it lies upwards); `not_simple`
+  // where the cell does not tell. `code`: of the cell, as the table has it. `earlier`: bit j: the crossing at
+  // corner j, if there is one, is earlier than this one.
+  std::uint8_t poles(std::uint32_t code, unsigned corner, unsigned earlier) {
+    const std::uint64_t key = std::uint64_t{code} << 16 | corner << 8 | earlier;
+    std::uint64_t& entry = known_[(key * 0x9e3779b97f4a7c15u) >> 49];
+    if (entry >> 8 != key + 1) entry = (key + 1) << 8 | find_poles(code, corner, earlier);
+    return static_cast<std::uint8_t>(entry);
+  }
+
+ private:
+  using Edges = CellEdges<D, Method::hull>;
+  using Face = std::array<std::uint8_t, D - 1>; // slots of the corners of a simplex of the link
+
+  struct Ends {
+    std::uint8_t lower, upper;
+  };
+
+  static constexpr unsigned time_bit = 1u << space;
+
+  bool is_earlier(unsigned slot, unsigned earlier) const {
+    const auto [lower, upper] = ends_[slot];
+    if (!(upper & time_bit)) return true;
+    if (lower & time_bit) return false;
+    return earlier >> lower & 1;
+  }
+  // Whether the slot lies in the facet of the cell that holds the edge at `corner` and is normal to the axis.
+  bool beside(unsigned slot, unsigned corner, int axis) const {
+    const unsigned differs = (ends_[slot].lower ^ corner) | (ends_[slot].upper ^ corner);
+    return !(differs >> axis & 1);
+  }
+
+  std::uint8_t find_poles(std::uint32_t code, unsigned corner, unsigned earlier) {
+    const unsigned edge = Edges::slot(corner, corner | time_bit);
+    faces_.clear();
+    for (std::size_t first = table_.first[code]; first < table_.first[code + 1]; first += D) {
+      Face face;
+      std::size_t size = 0;
+      bool has_edge = false;
+      for (std::size_t i = 0; i < D; ++i)
+        if (table_.corners[first + i] == edge)
+          has_edge = true;
+        else if (size < face.size())
+          face[size++] = table_.corners[first + i];
+      if (has_edge) faces_.push_back(face);
+    }
+
+    std::uint8_t poles = 0;
+    std::array<int, space> changes_of_arc{};      // in the facet normal to the axis
+    std::vector<std::array<unsigned, 3>> changes; // two slots and the face that has them
+    for (std::size_t face = 0; face < faces_.size(); ++face)
+      for (std::size_t i = 0; i < faces_[face].size(); ++i) {
+        const unsigned a = faces_[face][i];
+        for (int axis = 0; axis < space; ++axis)
+          if (is_pole(a, corner, axis) && is_earlier(a, earlier))
+            poles |= static_cast<std::uint8_t>(1u << (2 * axis + (corner >> axis & 1 ? 0 : 1)));
+        for (std::size_t j = 0; j < i; ++j) {
+          const unsigned b = faces_[face][j];
+          if (is_earlier(a, earlier) == is_earlier(b, earlier)) continue;
+          changes.push_back({std::min(a, b), std::max(a, b), static_cast<unsigned>(face)});
+          for (int axis = 0; axis < space; ++axis)
+            if (beside(a, corner, axis) && beside(b, corner, axis)) ++changes_of_arc[axis];
+        }
+      }
+    return is_simple(changes, changes_of_arc) ? poles : not_simple;
+  }
+
+  bool is_pole(unsigned slot, unsigned corner, int axis) const {
+    for (int other = 0; other < space; ++other)
+      if (other != axis && !beside(slot, corner, other)) return false;
+    return true;
+  }
+
+  bool is_simple(std::vector<std::array<unsigned, 3>>& changes,
+                 const std::array<int, space>& changes_of_arc) const {
+    if constexpr (D == 3) return changes.size() <= 1;
+    int ends = 0;
+    for (const int count : changes_of_arc) {
+      if (count > 1) return false;
+      ends += count;
+    }
+    // The line between earlier and later runs from face to face through the edges that change.
+    std::ranges::sort(changes);
+    UnionFind lines(faces_.size());
+    std::vector<bool> passed(faces_.size());
+    std::size_t pieces = 0;
+    for (std::size_t i = 0; i < changes.size(); ++i) {
+      passed[changes[i][2]] = true;
+      if (i > 0 && changes[i][0] == changes[i - 1][0] && changes[i][1] == changes[i - 1][1])
+        lines.unite(changes[i][2], changes[i - 1][2]);
+    }
+    for (std::size_t face = 0; face < faces_.size(); ++face)
+      pieces += passed[face] && lines.find(face) == face;
+    return pieces == (ends > 0);
+  }
+
+  const MarchTable<D>& table_;
+  std::array<Ends, 256> ends_{};     // of each slot
+  std::vector<std::uint64_t> known_; // entries: key + 1 and what it gives
+  std::vector<Face> faces_;
+};
+
+// Whether a vertex is regular, by the labels of the poles of a link that they describe: earlier and later
+// ones are connected, and where walls of the domain cut the link, each takes a part of its rim. Bits of poles
+// as above; `present`: those within the domain.
+inline bool poles_are_regular(unsigned present, unsigned earlier, int space) {
+  earlier &= present;
+  const unsigned later = present & ~earlier;
+  if (earlier == 0 || later == 0) return false;
+  unsigned rim = 0; // poles on it
+  for (int axis = 0; axis < space; ++axis) {
+    const unsigned pair = 3u << (2 * axis);
+    if (earlier == pair || later == pair) return false; // opposite poles are joined by others only
+    if ((present & pair) != pair) rim |= present & ~pair;
+  }
+  return rim == 0 || ((rim & earlier) != 0 && (rim & later) != 0);
+}
+
+} // namespace hyperiso::track_detail

@@ -1,0 +1,114 @@
+#pragma once
+// The cells between two steps, and what the surface has in each, made when asked for.
+
+#include "extract/march_table.hpp"
+#include "track/crossings.hpp"
+
+namespace hyperiso::track_detail {
+
+// The surface of the method `hull` (or `component`) between two steps without missing samples, by their masks
+// alone. A cell is numbered as its lowest sample.
+template <int D>
+class SignedCells {
+ public:
+  SignedCells(const MarchTable<D>& table, Crossings<D> crossings)
+      : table_(table), crossings_(std::move(crossings)), dims_(crossings_.dims()) {
+    const auto row_length = static_cast<GridEdge>(dims_[0]);
+    for (unsigned upper = 1; upper < 1u << D; ++upper)
+      for (int axis = 0; axis < D; ++axis)
+        if (upper >> axis & 1) {
+          GridEdge row = 0;
+          for (int a = D - 1; a > 0; --a) row = row * static_cast<GridEdge>(dims_[a]) + (upper >> a & 1);
+          const unsigned slot = CellEdges<D, Method::hull>::slot(upper & ~(1u << axis), upper);
+          edge_offset_[slot] = (row << D | GridEdge{1} << axis) * row_length + (upper & 1);
+        }
+  }
+
+  const Crossings<D>& crossings() const { return crossings_; }
+  const std::array<std::int64_t, D>& dims() const { return dims_; }
+
+  // Calls use(cell) for the cells around a grid edge, ascending.
+  template <class Use>
+  void for_each_cell_around(GridEdge edge, Use&& use) const {
+    const auto ends = grid_edge_ends<D>(dims_, edge);
+    for (unsigned around = 0; around < 1u << (D - 1); ++around) { // bit clear: the cell before the edge
+      std::int64_t cell = 0;
+      bool exists = true;
+      for (int axis = D - 2; axis >= 0; --axis) {
+        const bool along = ends.direction >> axis & 1, after = around >> axis & 1;
+        const std::int64_t index = along ? ends.lower[axis] : ends.lower[axis] - !after;
+        exists &= !(along && after) && index >= 0 && index + 1 < dims_[axis];
+        cell = cell * dims_[axis] + index;
+      }
+      if (exists) use(static_cast<std::uint64_t>(cell));
+    }
+  }
+
+  // The slots of the simplices of a cell, D each, in the order of the table.
+  std::span<const std::uint8_t> simplices(std::uint64_t cell) const {
+    const std::uint32_t code = code_of(cell);
+    return std::span(table_.corners).subspan(table_.first[code], table_.first[code + 1] - table_.first[code]);
+  }
+  GridEdge edge(std::uint64_t cell, unsigned slot) const {
+    const auto row_length = static_cast<std::uint64_t>(dims_[0]);
+    return (cell / row_length << D) * row_length + cell % row_length + edge_offset_[slot];
+  }
+
+  // Whether the surface crosses the edge.
+  bool crosses(GridEdge edge) const {
+    const auto ends = grid_edge_ends<D>(dims_, edge);
+    return inside(ends.lower) != inside(ends.upper);
+  }
+  // Of a crossing, from 0 to 1.
+  double time(GridEdge edge) const {
+    const auto ends = grid_edge_ends<D>(dims_, edge);
+    if (ends.lower[D - 1] == ends.upper[D - 1]) return static_cast<double>(ends.lower[D - 1]);
+    return crossings_.time_at(row_in_step(ends.lower), static_cast<std::size_t>(ends.lower[0]));
+  }
+
+  // Calls use(cell) for all cells that the surface may pass, ascending.
+  template <class Use>
+  void for_each_cell(Use&& use) const {
+    const auto row_length = static_cast<std::uint64_t>(dims_[0]);
+    std::array<std::int64_t, D> index{};
+    for (std::size_t row = 0; row < crossings_.rows(); ++row) {
+      bool exists = true;
+      for (int axis = 1; axis < D - 1; ++axis) exists &= index[axis] + 1 < dims_[axis];
+      if (exists)
+        for (std::uint64_t x = 0; x + 1 < row_length; ++x) use(row * row_length + x);
+      for (int axis = 1; axis < D - 1 && ++index[axis] == dims_[axis]; ++axis) index[axis] = 0;
+    }
+  }
+
+ private:
+  std::size_t row_in_step(const std::array<std::int64_t, D>& sample) const {
+    std::int64_t row = 0;
+    for (int axis = D - 2; axis > 0; --axis) row = row * dims_[axis] + sample[axis];
+    return static_cast<std::size_t>(row);
+  }
+  bool inside(const std::array<std::int64_t, D>& sample) const {
+    const StepMask& step = sample[D - 1] == 0 ? crossings_.lower() : crossings_.upper();
+    return step.inside(row_in_step(sample), static_cast<std::size_t>(sample[0]));
+  }
+  std::uint32_t code_of(std::uint64_t cell) const {
+    const auto row_length = static_cast<std::uint64_t>(dims_[0]);
+    const std::uint64_t row = cell / row_length, x = cell % row_length;
+    std::uint32_t code = 0;
+    for (unsigned place = 0; place < 1u << (D - 1); ++place) { // in a column: bit j stands for axis j + 1
+      std::uint64_t offset = 0;
+      for (int axis = D - 2; axis > 0; --axis)
+        offset = offset * static_cast<std::uint64_t>(dims_[axis]) + (place >> (axis - 1) & 1);
+      const StepMask& step = place >> (D - 2) & 1 ? crossings_.upper() : crossings_.lower();
+      code |= static_cast<std::uint32_t>(step.inside(row + offset, x)) << place;
+      code |= static_cast<std::uint32_t>(step.inside(row + offset, x + 1)) << (place + (1u << (D - 1)));
+    }
+    return code;
+  }
+
+  const MarchTable<D>& table_;
+  Crossings<D> crossings_;
+  std::array<std::int64_t, D> dims_;
+  std::array<GridEdge, 256> edge_offset_{};
+};
+
+} // namespace hyperiso::track_detail

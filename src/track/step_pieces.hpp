@@ -1,0 +1,80 @@
+#pragma once
+// The connected pieces of the surface at a step.
+
+#include "hyperiso/mesh.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+namespace hyperiso::track_detail {
+
+// Numbered by their first vertices. Edges are taken and given as numbered in the lower step of a slab.
+class StepPieces {
+ public:
+  // Of a surface with its edges, which is kept in place as long as this. `row_length`: samples along axis 0.
+  template <int S>
+  StepPieces(const SimplexMesh<S>& surface, GridEdge row_length)
+      : edges_(surface.edges.begin(), surface.edges.end()), row_length_(row_length), space_(S),
+        piece_(surface.vertex_count()) {
+    std::iota(piece_.begin(), piece_.end(), 0u); // parents at first
+    for (std::size_t simplex = 0; simplex < surface.simplex_count(); ++simplex) {
+      std::uint32_t first = root(static_cast<std::uint32_t>(surface.simplices[simplex * S]));
+      for (std::size_t corner = 1; corner < S; ++corner) {
+        const std::uint32_t other = root(static_cast<std::uint32_t>(surface.simplices[simplex * S + corner]));
+        if (other > first)
+          piece_[other] = first;
+        else
+          piece_[first] = other, first = other;
+      }
+    }
+    for (std::uint32_t vertex = 0; vertex < piece_.size(); ++vertex) {
+      if (piece_[vertex] == vertex) {
+        piece_[vertex] = static_cast<std::uint32_t>(first_.size());
+        first_.push_back(vertex);
+      } else {
+        piece_[vertex] = piece_[piece_[vertex]]; // of an earlier vertex, so a piece already
+      }
+    }
+  }
+
+  std::size_t count() const { return first_.size(); }
+  std::size_t vertex_count() const { return edges_.size(); }
+  std::uint32_t piece(std::size_t vertex) const { return piece_[vertex]; }
+  GridEdge edge(std::size_t vertex) const {
+    const GridEdge row_and_direction = edges_[vertex] / row_length_, x = edges_[vertex] % row_length_;
+    return ((row_and_direction >> space_ << (space_ + 1)) | (row_and_direction & directions())) *
+               row_length_ +
+           x;
+  }
+  GridEdge first_edge(std::size_t piece) const { return edge(first_[piece]); }
+
+  // Requires that the surface crosses the edge.
+  std::uint32_t piece_at(GridEdge edge) const { return piece_[*find(edge)]; }
+  std::optional<std::size_t> find(GridEdge edge) const {
+    const GridEdge row_and_direction = edge / row_length_;
+    const GridEdge at_step =
+        ((row_and_direction >> (space_ + 1) << space_) | (row_and_direction & directions())) * row_length_ +
+        edge % row_length_;
+    const auto place = std::ranges::lower_bound(edges_, at_step);
+    if (place == edges_.end() || *place != at_step) return std::nullopt;
+    return static_cast<std::size_t>(place - edges_.begin());
+  }
+
+ private:
+  GridEdge directions() const { return (GridEdge{1} << space_) - 1; }
+  std::uint32_t root(std::uint32_t vertex) {
+    while (piece_[vertex] != vertex) vertex = piece_[vertex] = piece_[piece_[vertex]];
+    return vertex;
+  }
+
+  std::span<const GridEdge> edges_; // as numbered at the step
+  GridEdge row_length_;
+  int space_;
+  std::vector<std::uint32_t> piece_; // of each vertex
+  std::vector<std::uint32_t> first_; // vertex of each piece
+};
+
+} // namespace hyperiso::track_detail
