@@ -1,21 +1,25 @@
 // Tracking: the Reeb graph of time on the isosurface M in space and time, slab by slab (docs/tracking.md).
 //
-// For each slab, which is what lies between two steps:
-//   slab.hpp          extracts the slab's part of M and gives each vertex its time, a fraction of the step:
-//   the
+// surface_steps.hpp makes, for each step:
+//   step_mask.hpp     which samples are inside, in bits
+//   step_pieces.hpp   the connected pieces of the surface there
+// and for each slab, which is what lies between two steps:
+//   crossings.hpp     the vertices strictly inside it, each with its time, a fraction of the step: the
 //                     weight of its crossing, so that equal samples give equal times and only vertices on a
 //                     step have 0 or 1
+//   candidates.hpp    those of them that tables of cells (cell_links.hpp) do not tell to be regular
+//   slab.hpp          the slab's part of M, which unfolds from the signs (signed_cells.hpp) where something
+//                     asks for it; or all of it, where samples are missing or equal the isovalue
+// Then, in order of time:
 //   level.hpp         decides the nodes at the step where the slab begins, from the closed level set of that
-//   time:
-//                     which arcs of the slab before reach each of its pieces, which strands of this one leave
-//                     it
-//   sweep.hpp         passes the vertices inside the slab in order of time and decides the nodes there
-//     link_test.hpp     almost all vertices are regular: told by bits
+//                     time: which arcs of the slab before reach each of its pieces, which strands of this
+//                     one leave it
+//   sweep.hpp         passes the candidates in order of time and decides the nodes there
+//     link_test.hpp     whether one is regular, in bits
 //     side.hpp          the slices just before and after a cluster of vertices with one time: their pieces,
-//     their
-//                       Euler characteristic
+//                       their Euler characteristic
 //     slice_search.hpp  whether several places of a slice are connected, and how many boundary curves pass
-//     some
+//                       some
 //   graph_builder.hpp collects events and arcs
 //   step_features.hpp measures the components at the step, on regions of samples (regions.hpp)
 //   links.hpp         says which rows of the last step each row comes from, for overlaps
