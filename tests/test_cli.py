@@ -209,7 +209,21 @@ class WrongUsage(Case):
                 ["extract", field, "--iso", "0.5", "--steps", "5"],
                 ["extract", field, "--iso", "0.5", "--time-axis", "w"], ["extract", field, "--iso", "0.5", "--time-axis", "7"],
                 ["slice", field, "--iso", "0.5"], ["slice", field, "--time", "0"],
-                ["slice", field, "--iso", "0.5", "--time", "0", "--axis", "x=0"],
+                ["slice", field, "--iso", "0.5", "--plane", "1,0,0"], ["slice", field, "--iso", "0.5", "--plane", "0,0,0,0"],
+                ["slice", field, "--iso", "0.5", "--time", "0:1"], ["slice", field, "--iso", "0.5", "--time", "0:1:-1"],
+                ["slice", field, "--iso", "0.5", "--time", "0:1:0"], ["slice", field, "--iso", "0.5", "--times", "0:1e9:1"],
+                ["slice", field, "--iso", "0.5", "--time", "0", "--frame", "world"],
+                ["slice", field, "--iso", "0.5", "--time", "0,0", "-o", "s.vtp"],
+                ["slice", field, "--iso", "0.5", "--time", "0", "-o", "s_%s.vtp"],
+                ["slice", field, "--iso", "0.5", "--time", "0", "-o", "s_%d_%d.vtp"],
+                ["slice", field, "--iso", "0.5", "--time", "0", "--axis", "x=0", "-o", "s.pvd"],
+                ["slice", field, "--iso", "0.5", "--time", "0", "--with", "nothing"],
+                ["slice", field, "--iso", "0.5", "--time", "0", "--colour-range", "0:1"],
+                ["slice", field, "--iso", "0.5", "--time", "0", "--normals", "--with", "normal=" + field],
+                ["extract", field, "--iso", "0.5", "--normals", "-o", "s.stl"],
+                ["extract", field, "--iso", "0.5", "--colour-by", "normal", "--normals", "-o", "s.ply"],
+                ["extract", field, "--iso", "0.5", "--colour-by", "v", "-o", "s.vtu"],
+                ["extract", field, "--iso", "0.5", "--method", "barycentric", "--normals"],
                 ["slice", field, "--iso", "0.5", "--axis", "w=0"], ["slice", field, "--iso", "0.5", "--axis", "x"],
                 ["slice", field, "--iso", "0.5", "--time", "5"], ["slice", field, "--iso", "0.5", "--time", "nan"],
                 ["slice", field, "--iso", "0.4,0.5", "--time", "0", "-o", "s.pvd"],
@@ -646,6 +660,84 @@ class View(Case):
         self.assert_refused(2, "view", "mesh.vtu", "--track", "-o", "a.html", words=["--track"])
         self.assert_refused(1, "view", field, "--iso", "0.5", "-o", "no/such/folder/a.html", words=["folder"])
 
+class Slices(Case):
+    # Any plane, several of each kind, in the order of the manual; from the field and from its mesh.
+    def test_planes_and_series_from_field_and_mesh(self):
+        field = self.sample("torus-morph", "14,14,14,7")
+        self.ok("extract", field, "--iso", "0.5", "-o", "all.vtu")
+        planes = ["--times", "0:2:0.5", "--time", "1.9", "--axis", "y=0.1", "--plane", "-1,0.5,0,0.25,0.125:0.5:0.125"]
+        both = []
+        for source in ([field, "--iso", "0.5"], ["all.vtu"]):
+            found = self.ok("slice", *source, *planes, "--json", "--measure", "--precision", "f64").json()["slices"]
+            self.assertEqual([cut["hyperplane"]["offset"] for cut in found],
+                             [0, 0.5, 1, 1.5, 2, 1.9, 0.1, 0.125, 0.25, 0.375, 0.5])
+            self.assertEqual(found[-1]["hyperplane"]["normal"], [-1, 0.5, 0, 0.25])
+            for cut in found:
+                self.assertEqual(cut["measure"]["bad_facets"], 0)
+                self.assertGreater(cut["simplices"], 0)
+            both.append([(cut["vertices"], cut["simplices"], cut["measure"]["euler_characteristic"]) for cut in found])
+        self.assertEqual(*both)
+
+    # In the frame of the axes places are true; the other frame is told, and leads to the same places.
+    def test_frame_of_an_oblique_plane(self):
+        field = self.sample("ball", "10,10,10,5")
+        points = []
+        for frame in ("axes", "orthonormal"):
+            cut = self.ok("slice", field, "--iso", "0.5", "--plane", "1,0,0,2,1.75", "--frame", frame, "--precision", "f64",
+                          "-o", "cut.off", "--json").json()["frame"]
+            lines = (self.folder / "cut.off").read_text().split("\n")
+            points.append([[origin + sum(u * row[k] for u, row in zip(map(float, line.split()), cut["directions"]))
+                            for k, origin in enumerate(cut["origin"])] for line in lines[2:2 + int(lines[1].split()[0])]])
+        self.assertGreater(len(points[0]), 100)
+        for a, b in zip(*points):
+            self.assertAlmostEqual(a[0] + 2 * a[3], 1.75)
+            for x, y in zip(a, b):
+                self.assertAlmostEqual(x, y)
+
+    def test_numbered_files_and_series(self):
+        field = self.sample("ball", "10,10,10,5")
+        run = self.ok("slice", field, "--iso", "0.5", "--times", "0:1:0.5", "-o", "f_%03d.vtp", "--json").json()
+        self.assertEqual([cut["file"] for cut in run["slices"]], ["f_000.vtp", "f_001.vtp", "f_002.vtp"])
+        self.ok("slice", field, "--iso", "0.5", "--time", "1", "-o", "100%%_%d.ply")
+        self.assertEqual(self.files(), ["100%_0.ply", "f_000.vtp", "f_001.vtp", "f_002.vtp", "field.nrrd"])
+
+    # Another field at the places of the surface: the field itself is the isovalue everywhere.
+    def test_data_of_the_vertices(self):
+        field = self.sample("ball", "10,10,10,5")
+        data = ["--with", f"{field},again={field}", "--normals"]
+        self.ok("extract", field, "--iso", "0.5", *data, "-o", "all.vtu")
+        for source in ([field, "--iso", "0.5", *data], ["all.vtu"]):
+            self.ok("slice", *source, "--plane", "1,0,0,1,1.2", "-o", "cut.ply", "--colour-by", "t")
+            header, body = (self.folder / "cut.ply").read_bytes().split(b"end_header\n")
+            names = re.findall(rb"property (\w+) (\w+)\n", header)
+            self.assertEqual([name.decode() for _, name in names],
+                             ["x", "y", "z", "nx", "ny", "nz", "field", "again", "t", "red", "green", "blue"])
+            count = int(re.search(rb"element vertex (\d+)", header)[1])
+            vertices = list(struct.iter_unpack("<9f3B", body[:count * 39]))
+            self.assertGreater(count, 100)
+            self.assertGreater(len({vertex[9:] for vertex in vertices}), 10)
+            for vertex in vertices:
+                self.assertAlmostEqual(math.hypot(*vertex[3:6]), 1, places=5)
+                self.assertAlmostEqual(vertex[6], 0.5, places=5)
+                self.assertEqual(vertex[6], vertex[7])
+        self.assert_refused(2, "slice", "all.vtu", "--time", "0", "--normals", words=["extract"])
+
+    def test_data_from_a_variable_of_the_same_file(self):
+        points = [(x, y, z) for z in range(4) for y in range(4) for x in range(4)]
+        arrays = {"distance": [math.dist(p, (1.4, 1.5, 1.6)) for p in points], "height": [p[2] * 2.0 for p in points]}
+        data = "".join(f'<DataArray type="Float64" Name="{name}" format="ascii">{" ".join(map(repr, values))}</DataArray>'
+                       for name, values in arrays.items())
+        (self.folder / "two.vti").write_text(
+            '<VTKFile type="ImageData"><ImageData WholeExtent="0 3 0 3 0 3" Origin="0 0 0" Spacing="1 1 1">'
+            f'<Piece Extent="0 3 0 3 0 3"><PointData>{data}</PointData></Piece></ImageData></VTKFile>')
+        self.ok("extract", "two.vti", "--iso", "1.2", "--inside", "below", "--with", "height", "-o", "s.ply", "--precision", "f64")
+        header, body = (self.folder / "s.ply").read_bytes().split(b"end_header\n")
+        self.assertIn(b"property double height\n", header)
+        for x, y, z, height in struct.iter_unpack("<4d", body[:int(re.search(rb"vertex (\d+)", header)[1]) * 32]):
+            self.assertAlmostEqual(height, 2 * z)
+        self.assert_refused(2, "extract", "two.vti", "--iso", "1.2", "--with", "depth", words=["depth", "height"])
+
+
 class World(Case):
     """A field whose file turns and scales its axes: surfaces come in the coordinates of the world."""
 
@@ -670,6 +762,27 @@ class World(Case):
                 centre = [(min(column) + max(column)) / 2 for column in zip(*points)]
                 for found, expected in zip(centre, (100 - 2 * 6, 200 + 2 * (5 + step), 300 + 2 * 6)):
                     self.assertAlmostEqual(found, expected, places=3)
+
+    # Time in a space of four dimensions, with an offset of its own; and planes across axes of the world.
+    def test_time_and_planes_mean_the_same_for_field_and_mesh(self):
+        size, samples = 9, []
+        for t, z, y, x in itertools.product(range(3), range(size), range(size), range(size)):
+            samples.append(3 - math.dist((x, y, z), (3 + t, 4, 4)))
+        (self.folder / "turned.nrrd").write_bytes(
+            (f"NRRD0005\ntype: float\ndimension: 4\nsizes: {size} {size} {size} 3\nspace: scanner-xyz-time\n"
+             "space directions: (1,1,0,0) (-1,1,0,0) (0,0,2,0) (0,0,0,0.5)\nspace origin: (100,200,300,7)\n"
+             "endian: little\nencoding: raw\n\n").encode() + struct.pack(f"<{len(samples)}f", *samples))
+        self.ok("extract", "turned.nrrd", "--iso", "0", "-o", "all.vtu", "--precision", "f64")
+        for plane in (["--time", "7.25"], ["--time", "7.5"], ["--plane", "1,0,0,0.5,103.9"], ["--plane", "0,0,1,0,308"],
+                      ["--plane", "1,1,0,0,308.7"], ["--axis", "0=100"]):
+            cuts = [self.ok("slice", *source, *plane, "--json", "--measure", "--precision", "f64", "-o", "cut.off").json()
+                    for source in (["turned.nrrd", "--iso", "0"], ["all.vtu"])]
+            self.assertGreater(cuts[0]["simplices"], 50)
+            for key in ("vertices", "simplices", "hyperplane", "frame"):
+                self.assertEqual(cuts[0][key], cuts[1][key], plane)
+            for key in ("content", "boundary_facets", "euler_characteristic"):
+                self.assertAlmostEqual(cuts[0]["measure"][key], cuts[1]["measure"][key], places=6, msg=plane)
+        self.assert_refused(2, "slice", "turned.nrrd", "--iso", "0", "--time", "0.5", words=["7", "8"])
 
     def surface_points(self, path):
         lines = (self.folder / path).read_text().split("\n")

@@ -425,7 +425,7 @@ TEST(Slice, frames_of_an_oblique_plane) {
   const Hyperplane<4> plane{{1, -2, 0.5, 1.5}, 0.3};
   const auto true_lengths = sliced(surface, plane, {.precision = Precision::f64}),
              in_axes = sliced(surface, plane, {.precision = Precision::f64, .frame = SliceFrame::axes});
-  const auto directions = slice_directions(plane, SliceFrame::orthonormal);
+  const auto directions = plane_coordinates(plane, SliceFrame::orthonormal).directions;
   ASSERT_EQ(true_lengths.vertex_count(), in_axes.vertex_count());
   ASSERT_GT(in_axes.vertex_count(), 0u);
   double squared = 0;
@@ -488,7 +488,7 @@ TEST(FieldSlicer, other_fields_and_normals) {
     EXPECT_TRUE(from_field == from_mesh);
 
     // The cut is a ball around the foot of the origin, and the field is affine on it.
-    const auto directions = slice_directions(plane, SliceFrame::orthonormal);
+    const auto directions = plane_coordinates(plane, SliceFrame::orthonormal).directions;
     double squared = 0;
     for (const double component : plane.normal) squared += component * component;
     for (std::size_t vertex = 0; vertex < cut->vertex_count(); ++vertex) {

@@ -65,8 +65,8 @@ class FieldReader : public StepSource {
 ///
 /// NRRD: time is the axis of kind `time`, else of kind `list` (3D Slicer's sequences), else the one labelled
 /// t or time. Axis mins are the position of sample 0, unless `centerings` says cell. Space directions along
-/// the axes of the space become origins and spacings, others FieldInfo::world, unless the space has more
-/// dimensions than the field has axes in it: then only the spacings are kept.
+/// an axis of the space of their own become origins and spacings, others FieldInfo::world, unless the space
+/// has more dimensions than the field has axes in it: then only the spacings are kept.
 ///
 /// VTI: the array `variable`, else the active scalars, else the first with one component; of points, else of
 /// cells, whose centres are the samples then. Axes of one sample are left out: a flat image has two axes.
@@ -136,7 +136,7 @@ struct WriteMeshOptions {
 /// |          |                                    | component: NAME, or NAME_0, NAME_1, ...; 64-bit      |
 /// |          |                                    | integers as 32-bit ones or, where too large, double; |
 /// |          |                                    | integers red, green and blue from 0 to 255 as bytes: |
-/// |          |                                    | the colours of the vertices                          |
+/// |          |                                    | the colours of the vertices; normals as nx, ny, nz   |
 /// | stl      | triangles; not in R^4              | positions, f32, unshared; normals are computed, 0    |
 /// |          |                                    | for a triangle without area                          |
 /// | obj, off | triangles, obj also segments;      | positions, in as many digits as it takes             |

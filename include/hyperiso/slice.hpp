@@ -35,12 +35,21 @@ enum class SliceFrame {
   axes,        ///< those of the axes without the one most aligned with the normal: places are true
 };
 
-/// The directions in space along which the coordinates of a cut grow: row k is that of coordinate k, D
-/// numbers. With `orthonormal` they are the basis of the plane, and the point with coordinates u is offset /
-/// |normal|^2
-/// * normal + sum of u_k * row k.
+/// How coordinates on a plane belong to points in space. `rows` take a point on the plane to its coordinates;
+/// the point with coordinates u is foot + sum of u[k] * directions[k]. With `orthonormal` both are a basis of
+/// the plane, and `foot` is its point nearest to the origin.
+struct PlaneCoordinates {
+  std::vector<std::vector<double>> rows, directions; ///< D - 1 rows of D
+  std::vector<double> foot;                          ///< D
+};
 template <int D>
-std::vector<std::vector<double>> slice_directions(const Hyperplane<D>& plane, SliceFrame frame);
+PlaneCoordinates plane_coordinates(const Hyperplane<D>& plane, SliceFrame frame);
+
+/// The coordinate along an axis of space (the time, say) of each vertex of a cut in the plane's `frame`, as
+/// a vertex attribute of its own; on an oblique plane the coordinates of the cut do not tell.
+template <int D>
+Attribute axis_on_slice(const Mesh& cut, const Hyperplane<D>& plane, SliceFrame frame, int axis,
+                        std::string name);
 
 struct SliceOptions {
   Precision precision = Precision::f32; ///< of the positions; they are computed in double in any case

@@ -18,16 +18,20 @@ struct Surface {
   Outcome outcome;
 };
 
-Surface make_surface(const Extract& options, const Field& field, double isovalue, const std::string& path,
-                     FileGroup& files) {
+Surface make_surface(const Extract& options, const Field& field, const std::vector<NamedField>& others,
+                     double isovalue, const std::string& path, FileGroup& files) {
   ExtractOptions extraction = options.surface.extract_options(options.machine);
-  extraction.keep_edges = !path.empty();
+  extraction.keep_edges = !path.empty() || options.data.from_field();
   const Stopwatch extracting;
-  const Mesh mesh = make_mesh<highest_extracted>("extract", field, options.printing.quiet,
-                                                 [&](const auto& view, const Progress& progress) {
-                                                   extraction.progress = progress;
-                                                   return extract(view, isovalue, extraction);
-                                                 });
+  Mesh mesh = make_mesh<highest_extracted>(
+      "extract", field, options.printing.quiet, [&](const auto& view, const Progress& progress) {
+        extraction.progress = progress;
+        auto surface = extract(view, isovalue, extraction);
+        if (surface)
+          take(add_point_data(*surface, field, isovalue, extraction.inside, others, options.data.normals));
+        return surface;
+      });
+  options.data.colour(mesh);
   const double extract_seconds = extracting.seconds();
   if (mesh.simplex_count() == 0 && !options.printing.quiet) print_warning(why_empty(field, isovalue));
   Surface surface{isovalue, finish(mesh, options, field.info, path, files)};
@@ -65,13 +69,14 @@ int run(const Extract& options) {
   const std::vector<double> isovalues = parse_isovalues(options.iso);
   (void)options.surface.extract_options(options.machine); // wrong ones are told before anything is read
   const auto [field, read_seconds] = load_field(options, lowest_dimension, highest_extracted, 1);
+  const std::vector<NamedField> others = load_others(options);
 
   FileGroup files;
   std::vector<Surface> surfaces;
   for (const double isovalue : isovalues) {
     std::string path = options.output.path;
     if (options.output.wanted() && isovalues.size() > 1) path = with_suffix(path, "iso" + shortest(isovalue));
-    surfaces.push_back(make_surface(options, field, isovalue, path, files));
+    surfaces.push_back(make_surface(options, field, others, isovalue, path, files));
     surfaces.back().outcome.read_seconds = read_seconds;
   }
   take(files.commit());
@@ -90,6 +95,7 @@ Command extract_command(CLI::App& program) {
       ->required()
       ->group("Surface");
   options->surface.add_to(*app);
+  options->data.add_to(*app);
   options->output.add_to(*app,
                          "With several isovalues one file for each: PATH with _iso and the value before "
                          "the suffix, as in wave_iso0.5.vtu.");

@@ -10,11 +10,20 @@ LoadedField load_field(const FieldMeshOptions& options, int lowest, int highest,
   const int dimension = without_flat_axes(selected(reader->info(), selection)).dimension();
   check_dimension(dimension, lowest, highest, "the field");
   if (options.output.wanted()) options.output.check(dimension, dimension - codimension, options.output.path);
+  options.data.check(options.output, options.output.path);
 
   const Stopwatch reading;
   LoadedField loaded{without_flat_axes(read_selection(*reader, selection, options.printing.quiet))};
   loaded.read_seconds = reading.seconds();
   return loaded;
+}
+
+std::vector<NamedField> load_others(const FieldMeshOptions& options) {
+  std::vector<NamedField> others;
+  for (const NamedSteps& other : options.data.open(options.input, options.machine))
+    others.push_back(
+        {other.name, without_flat_axes(take(other.steps->read(0, other.steps->info().axes.back().count)))});
+  return others;
 }
 
 Outcome finish(const Mesh& mesh, const FieldMeshOptions& options, const FieldInfo& info,

@@ -4,6 +4,7 @@
 
 #include "cli/dispatch.hpp"
 #include "cli/failure.hpp"
+#include "cli/point_data.hpp"
 #include "cli/surface.hpp"
 
 namespace hyperiso::cli {
@@ -11,6 +12,7 @@ namespace hyperiso::cli {
 struct FieldMeshOptions {
   FieldOptions input;
   SurfaceOptions surface;
+  PointDataOptions data; // of surfaces
   MeshOutputOptions output;
   bool measure = false, self_intersections = false;
   PrintOptions printing;
@@ -26,6 +28,9 @@ struct LoadedField {
 // Reads the field that the options select. Fails, before its samples are read, if it does not have `lowest`
 // to `highest` dimensions, or if the file to write cannot hold simplices of `codimension` less than that.
 LoadedField load_field(const FieldMeshOptions& options, int lowest, int highest, int codimension);
+
+// Reads the fields of --with, as the options select of the field itself.
+std::vector<NamedField> load_others(const FieldMeshOptions& options);
 
 // What is told about one mesh.
 struct Outcome {

@@ -8,6 +8,7 @@
 #include "core/text.hpp"
 
 #include <algorithm>
+#include <filesystem>
 
 namespace hyperiso::cli {
 namespace {
@@ -207,6 +208,11 @@ void MeshOutputOptions::check(int dimension, int simplex_dimension, const std::s
   WriteMeshOptions options;
   options.format = format;
   take(check_mesh_format(dimension, simplex_dimension, written, options));
+}
+
+std::string MeshOutputOptions::format_of(const std::string& written) const {
+  const std::string suffix = std::filesystem::path(written).extension().string();
+  return !format.empty() || suffix.empty() ? format : suffix.substr(1);
 }
 
 WriteMeshOptions MeshOutputOptions::write_options(const std::vector<Axis>& axes, FileGroup& group) const {

@@ -81,6 +81,8 @@ struct MeshOutputOptions {
   // Fails if the format of the file `written` cannot hold simplices of dimension `simplex_dimension` in
   // R^dimension.
   void check(int dimension, int simplex_dimension, const std::string& written) const;
+  // The name of the format that a file is written in: "vtu", "ply", ...
+  std::string format_of(const std::string& written) const;
   WriteMeshOptions write_options(const std::vector<Axis>& axes, FileGroup& group) const;
 };
 

@@ -50,6 +50,29 @@ std::vector<double> parse_numbers(std::string_view option, std::string_view text
   return numbers;
 }
 
+std::vector<double> parse_series(std::string_view option, std::string_view text) {
+  constexpr double most = 1e6, rounding = 1e-9; // a last step that misses the end by less is one on it
+  std::vector<double> numbers;
+  for (const std::string& piece : split(text, ',')) {
+    const auto parts = split(piece, ':');
+    if (parts.size() == 1) {
+      numbers.push_back(parse_number(option, piece));
+      continue;
+    }
+    if (parts.size() != 3) fail(option, piece, "a number or a series FROM:TO:STEP");
+    const double from = parse_number(option, parts[0]), to = parse_number(option, parts[1]),
+                 step = parse_number(option, parts[2]);
+    const double steps = (to - from) / step;
+    if (!(steps >= 0)) fail(option, piece, "a series FROM:TO:STEP whose steps lead from FROM to TO");
+    if (steps > most) fail(option, piece, "a series of at most a million numbers");
+    for (double i = 0; i <= steps + rounding; ++i) {
+      const double number = from + i * step;
+      numbers.push_back(std::abs(number - to) <= rounding * std::abs(step) ? to : number);
+    }
+  }
+  return numbers;
+}
+
 std::int64_t parse_integer(std::string_view option, std::string_view text) {
   const auto number = spelled<std::int64_t>(text);
   if (!number || *number < 0) fail(option, text, "a whole number from 0 on");

@@ -168,6 +168,35 @@ std::string with_suffix(const std::string& path, const std::string& suffix) {
   return result.string();
 }
 
+bool has_number_pattern(const std::string& path) { return path.find('%') != std::string::npos; }
+
+std::string with_number(const std::string& option, const std::string& path, std::size_t number) {
+  std::string result;
+  int places = 0;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    if (path[i] != '%' || path.compare(i, 2, "%%") == 0) {
+      i += path[i] == '%';
+      result += path[i];
+      continue;
+    }
+    const std::size_t end = path.find_first_not_of("0123456789", i + 1);
+    const std::string width = path.substr(i + 1, end == std::string::npos ? end : end - i - 1);
+    if (end == std::string::npos || path[end] != 'd' || width.size() > 2)
+      fail_usage(text(option, ": '", path.substr(i),
+                      "' does not begin with the place of a number, such as "
+                      "%04d; a percent sign itself is %%"));
+    std::string digits = std::to_string(number);
+    const std::size_t wanted = width.empty() ? 0 : std::stoul(width);
+    if (digits.size() < wanted) digits.insert(0, wanted - digits.size(), width.front() == '0' ? '0' : ' ');
+    result += digits;
+    ++places;
+    i = end;
+  }
+  if (places != 1)
+    fail_usage(text(option, ": '", path, "' has ", places, " places for a number; one is needed"));
+  return result;
+}
+
 std::string why_empty(const Field& field, double isovalue) {
   StatisticsCollector collector;
   collector.add(field);

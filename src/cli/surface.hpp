@@ -54,6 +54,11 @@ Affine at_coordinate(const Affine& map, int axis, double value);
 // The file of one of several results: name.vtu, "iso0.5" -> name_iso0.5.vtu
 std::string with_suffix(const std::string& path, const std::string& suffix);
 
+// Whether a path has a place for a number: %d, %4d or %04d, as in frames/f_%04d.ply.
+bool has_number_pattern(const std::string& path);
+// The path with the number there. Fails unless there is exactly one such place ("%%" is a percent sign).
+std::string with_number(const std::string& option, const std::string& path, std::size_t number);
+
 // A warning for an empty surface: that the isovalue is outside the range of the field, if it is.
 std::string why_empty(const Field& field, double isovalue);
 

@@ -342,9 +342,10 @@ Status place_along_axis(const AxisFields& fields, std::size_t number, const Axes
 }
 
 // Places the axes that have a direction in space. Component k of the space belongs to the k-th of them, the
-// last to time if that is among them. Where every direction lies along its own component, origin and spacing
-// say it all; else the axes keep their spacing and an affine map their direction. A space that has not as
-// many dimensions as there are directions cannot be a map of the axes: they keep their spacing only.
+// last to time if that is among them. Where a direction lies along its own component, and no other does,
+// origin and spacing say it all; the other axes keep their spacing and an affine map their direction. A space
+// that has not as many dimensions as there are directions cannot be a map of the axes: they keep their
+// spacing only.
 Status place_in_space(const AxesParser& parser, StoredField& field) {
   const auto& axes = parser.axes;
   const Space& space = parser.space;
@@ -355,34 +356,45 @@ Status place_in_space(const AxesParser& parser, StoredField& field) {
     of_component.push_back(static_cast<std::size_t>(*field.time_axis));
 
   const bool is_map = of_component.size() == space.dimension;
-  bool diagonal = is_map;
-  for (std::size_t k = 0; k < of_component.size(); ++k) {
-    const AxisFields& fields = axes[of_component[k]];
-    for (const double component : *fields.direction)
+  for (const std::size_t number : of_component)
+    for (const double component : *axes[number].direction)
       if (std::isnan(component)) return parser.malformed("\"space directions:\" has a nan");
+  // Component k is that of its axis alone, and nothing else: origin and spacing of the axis say it all.
+  const auto is_alone = [&](std::size_t k) {
+    const AxisFields& fields = axes[of_component[k]];
+    if (!is_map || fields.coordinates || (*fields.direction)[k] == 0) return false;
     for (std::size_t other = 0; other < space.dimension; ++other)
-      diagonal = diagonal && ((*fields.direction)[other] != 0) == (other == k);
-    diagonal = diagonal && !fields.coordinates;
-  }
+      if (other != k && ((*fields.direction)[other] != 0 || (*axes[of_component[other]].direction)[k] != 0))
+        return false;
+    return true;
+  };
 
   const std::size_t D = axes.size();
+  bool diagonal = is_map;
   Affine world{Vector(D * D), Vector(D)};
   for (std::size_t axis = 0; axis < D; ++axis) world.linear[axis * D + axis] = axes[axis].direction ? 0 : 1;
   for (std::size_t k = 0; k < of_component.size(); ++k) {
-    const AxisFields& fields = axes[of_component[k]];
-    Axis& axis = field.axes[of_component[k]];
+    const std::size_t number = of_component[k];
+    const AxisFields& fields = axes[number];
+    Axis& axis = field.axes[number];
     const Vector& direction = *fields.direction;
     double length = 0;
     for (const double component : direction) length = std::hypot(length, component);
-    axis.origin = diagonal ? space.origin[k] : 0;
-    axis.spacing = diagonal ? direction[k] : length;
+    const bool alone = is_alone(k);
+    diagonal = diagonal && alone;
+    axis.origin = alone ? space.origin[k] : 0;
+    axis.spacing = alone ? direction[k] : length;
     if (!is_map) continue;
     if (axis.unit.empty() && !space.units.empty()) axis.unit = space.units[k];
+    if (alone) {
+      world.linear[number * D + number] = 1;
+      continue;
+    }
     // Coordinates of our own are positions in units of the direction, whatever its length.
     const double unit_length = fields.coordinates ? 1 : length;
     for (std::size_t row = 0; row < space.dimension; ++row)
-      world.linear[of_component[row] * D + of_component[k]] = direction[row] / unit_length;
-    world.offset[of_component[k]] = space.origin[k];
+      world.linear[of_component[row] * D + number] = direction[row] / unit_length;
+    world.offset[number] = space.origin[k];
   }
   if (is_map && !diagonal) {
     if (determinant(world.linear, static_cast<int>(D)) == 0)

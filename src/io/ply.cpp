@@ -80,6 +80,11 @@ bool is_colour(const std::string& name, const std::vector<T>& values) {
          std::ranges::all_of(values, [](T value) { return value >= 0 && value <= 255; });
 }
 
+// What programs take for normals is called nx, ny, nz.
+bool is_normal(const Attribute& attribute) {
+  return attribute.name == normal_attribute && attribute.components == 3;
+}
+
 std::vector<Column> columns_of(const Mesh& mesh, Attribute::Location location, std::set<std::string> taken) {
   std::vector<Column> columns;
   for (const Attribute& attribute : mesh.attributes) {
@@ -97,7 +102,9 @@ std::vector<Column> columns_of(const Mesh& mesh, Attribute::Location location, s
               return column_of<T, T>(values, component, components);
           },
           attribute.values));
-      const std::string name = components == 1 ? attribute.name : text(attribute.name, "_", component);
+      const std::string name = components == 1        ? attribute.name
+                               : is_normal(attribute) ? text("n", "xyz"[component])
+                                                      : text(attribute.name, "_", component);
       columns.back().name = property_name(name, taken);
     }
   }

@@ -27,6 +27,7 @@ struct Frame {
   // Row k takes a point to its coordinate k; direction k is that of the plane along which it grows by one
   // while the others stay.
   std::array<std::array<double, D>, D - 1> rows{}, directions{};
+  std::array<double, D> foot{}; // where all coordinates are 0
   bool positive = true;
 
   Frame(const Hyperplane<D>& plane, SliceFrame kind) {
@@ -39,7 +40,7 @@ struct Frame {
       std::array<double, D>&direction = directions[row], &along = rows[row];
       along[axis] = direction[axis] = 1;
       if (kind == SliceFrame::axes) {
-        direction[across] = -normal[axis] / normal[across];
+        direction[across] = 0 - normal[axis] / normal[across];
       } else {
         remove(direction, normal);
         for (int done = 0; done < row; ++done) remove(direction, directions[done]);
@@ -49,6 +50,13 @@ struct Frame {
       ++row;
     }
     positive = determinant(oriented, D) > 0;
+    if (kind == SliceFrame::axes || axis_across(plane)) {
+      foot[across] = plane.offset / plane.normal[across];
+    } else {
+      double along = 0; // of the unit normal
+      for (int k = 0; k < D; ++k) along += plane.normal[k] * normal[k];
+      for (int k = 0; k < D; ++k) foot[k] = plane.offset / along * normal[k];
+    }
   }
 
   std::array<double, D - 1> coordinates(const std::array<double, D>& point) const {

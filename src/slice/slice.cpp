@@ -137,14 +137,35 @@ Result<SimplexMesh<D - 1, K - 1>> SliceIndex<D, K>::slice(const SimplexMesh<D, K
 }
 
 template <int D>
-std::vector<std::vector<double>> slice_directions(const Hyperplane<D>& plane, SliceFrame frame) {
-  std::vector<std::vector<double>> rows;
-  for (const auto& direction : Frame<D>(plane, frame).directions)
-    rows.emplace_back(direction.begin(), direction.end());
-  return rows;
+PlaneCoordinates plane_coordinates(const Hyperplane<D>& plane, SliceFrame kind) {
+  const Frame<D> frame(plane, kind);
+  PlaneCoordinates result;
+  for (std::size_t row = 0; row < D - 1; ++row) {
+    result.rows.emplace_back(frame.rows[row].begin(), frame.rows[row].end());
+    result.directions.emplace_back(frame.directions[row].begin(), frame.directions[row].end());
+  }
+  result.foot.assign(frame.foot.begin(), frame.foot.end());
+  return result;
 }
-template std::vector<std::vector<double>> slice_directions(const Hyperplane<3>&, SliceFrame);
-template std::vector<std::vector<double>> slice_directions(const Hyperplane<4>&, SliceFrame);
+
+template <int D>
+Attribute axis_on_slice(const Mesh& cut, const Hyperplane<D>& plane, SliceFrame kind, int axis,
+                        std::string name) {
+  const Frame<D> frame(plane, kind);
+  std::vector<double> values(cut.vertex_count());
+  for (std::size_t vertex = 0; vertex < values.size(); ++vertex) {
+    values[vertex] = frame.foot[axis];
+    for (std::size_t k = 0; k < D - 1; ++k)
+      values[vertex] += frame.directions[k][axis] * cut.positions[vertex * (D - 1) + k];
+  }
+  if (cut.positions.wide()) return {std::move(name), Attribute::Location::vertex, 1, std::move(values)};
+  return {std::move(name), Attribute::Location::vertex, 1, std::vector<float>(values.begin(), values.end())};
+}
+
+template PlaneCoordinates plane_coordinates(const Hyperplane<3>&, SliceFrame);
+template PlaneCoordinates plane_coordinates(const Hyperplane<4>&, SliceFrame);
+template Attribute axis_on_slice(const Mesh&, const Hyperplane<3>&, SliceFrame, int, std::string);
+template Attribute axis_on_slice(const Mesh&, const Hyperplane<4>&, SliceFrame, int, std::string);
 
 #define HYPERISO_INSTANTIATE_SLICE(D, K)                                                                     \
   template Result<SimplexMesh<D - 1, K - 1>> slice(const SimplexMesh<D, K>&, const Hyperplane<D>&,           \
