@@ -53,7 +53,9 @@ class FamilyBlock {
       if (lanes_[order_[i]].is_free(time, gap) &&
           (best == order_.size() || distance(i, near) < distance(best, near)))
         best = i;
-    if (best == order_.size() || distance(best, near) > 3) {
+    // Few tracks get lanes beside their relatives; many would need more than a picture has room for.
+    const bool far = distance(best, near) > 3 && order_.size() < comfortable_lanes;
+    if (best == order_.size() || far) {
       best = order_.empty() ? 0 : std::min(near + (number % 2 == 0 ? 1 : 0), order_.size());
       order_.insert(order_.begin() + static_cast<std::ptrdiff_t>(best), lanes_.size());
       lanes_.emplace_back();
@@ -64,6 +66,7 @@ class FamilyBlock {
     tracks_on_[lane].push_back(number);
     lane_of_[number] = lane;
   }
+  static constexpr std::size_t comfortable_lanes = 24;
   static std::size_t distance(std::size_t a, std::size_t b) { return a < b ? b - a : a - b; }
 
   // Where in the order a parent or child that has a lane already stands, else the end.

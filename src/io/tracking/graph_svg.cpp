@@ -4,6 +4,7 @@
 #include "track/lanes.hpp"
 
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace hyperiso {
@@ -13,6 +14,7 @@ using namespace tracking_files;
 namespace {
 
 constexpr double left_margin = 48, right_margin = 28, top_margin = 64, width = 1280;
+constexpr std::size_t many = 100; // tracks; from there on what joins them is drawn fainter, and marks smaller
 
 // A mark of about radius 1 around the origin, drawn with the colours of its group.
 const char* glyph_shape(EventType type) {
@@ -44,14 +46,15 @@ class GraphPicture {
  public:
   explicit GraphPicture(const TrackingGraph& graph)
       : graph_(graph), time_(graph, left_margin, width - right_margin),
-        lanes_(track_detail::assign_lanes(graph, time_.duration(34))), rows_(graph.tracks.size()) {
+        lanes_(track_detail::assign_lanes(graph, time_.duration(shown_tracks() > many ? 20 : 34))),
+        rows_(graph.tracks.size()) {
     const auto lanes = static_cast<double>(std::max<std::int64_t>(lanes_.count, 1));
-    pitch_ = std::clamp(640 / lanes, 9.0, 56.0);
+    pitch_ = std::clamp(640 / lanes, 8.0, 56.0);
     bottom_ = top_margin + pitch_ * lanes;
     for (const Feature& row : graph.features) rows_[index(row.track)].push_back(&row);
     for (const Track& track : graph.tracks)
       if (!track.simplified) largest_ = std::max(largest_, track.max_volume);
-    glyph_ = std::clamp(pitch_ * 0.2, 2.4, 5.5);
+    glyph_ = std::clamp(pitch_ * 0.2, shown_tracks() > many ? 2.0 : 3.2, 5.5);
   }
 
   std::string svg() {
@@ -60,8 +63,10 @@ class GraphPicture {
       title += text(" (", graph_.tracks.size() - shown_tracks(), " more simplified)");
     std::string body = time_.grid(top_margin, bottom_);
     body += weak_links();
+    body += text("<g opacity=\"", shown_tracks() > many ? 0.45 : 1.0, "\">\n");
     for (std::size_t track = 0; track < graph_.tracks.size(); ++track)
       if (is_shown(static_cast<std::int64_t>(track))) body += connections(track);
+    body += "</g>\n";
     for (std::size_t track = 0; track < graph_.tracks.size(); ++track)
       if (is_shown(static_cast<std::int64_t>(track))) body += ribbon(track);
     body += glyphs();
@@ -185,8 +190,16 @@ class GraphPicture {
                 glyph_shape(type), words.empty() ? "" : tooltip(words), "</g>\n");
   }
 
+  // Marks of one kind that would cover each other on a lane are drawn as one.
   std::string glyphs() {
-    std::string svg;
+    struct Mark {
+      EventType type;
+      double x, y;
+      std::string words;
+      int more;
+    };
+    std::vector<Mark> marks;
+    std::map<std::pair<std::int64_t, EventType>, std::size_t> last_on; // lane: place in marks
     for (const TrackingEvent& event : graph_.events) {
       if (event.simplified || *glyph_shape(event.type) == 0) continue;
       const auto& tracks =
@@ -194,11 +207,24 @@ class GraphPicture {
       const auto shown = std::ranges::find_if(tracks, [&](std::int64_t track) { return is_shown(track); });
       if (shown == tracks.end()) continue;
       types_.insert(event.type);
-      std::string words =
-          text(name_of(event.type), " at ", event.time, ", position ", joined(event.position, ", "), "; in ",
-               joined(event.tracks_in, " "), "; out ", joined(event.tracks_out, " "));
-      svg += mark(event.type, time_.x(event.time), y(*shown), "#222", words);
+      const double x = time_.x(event.time);
+      const auto [last, is_first] =
+          last_on.try_emplace({lanes_.lane_of_track[index(*shown)], event.type}, marks.size());
+      if (!is_first && x - marks[last->second].x < 1.6 * glyph_) {
+        ++marks[last->second].more;
+        continue;
+      }
+      last->second = marks.size();
+      marks.push_back(
+          {event.type, x, y(*shown),
+           text(name_of(event.type), " at ", event.time, ", position ", joined(event.position, ", "), "; in ",
+                joined(event.tracks_in, " "), "; out ", joined(event.tracks_out, " ")),
+           0});
     }
+    std::string svg;
+    for (const Mark& drawn : marks)
+      svg += mark(drawn.type, drawn.x, drawn.y, "#222",
+                  drawn.more == 0 ? drawn.words : text(drawn.words, "; and ", drawn.more, " more"));
     return svg;
   }
 

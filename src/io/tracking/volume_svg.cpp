@@ -31,14 +31,16 @@ class VolumePicture {
     std::ranges::sort(largest);
     logarithmic_ = !largest.empty() && largest.back() > 50 * largest[largest.size() / 2];
     high_ = volumes.back() * (logarithmic_ ? 1.5 : 1.05);
-    low_ = logarithmic_ ? std::pow(10, std::floor(std::log10(volumes.front()))) : 0;
+    // What is a millionth of the largest and less lies on the floor.
+    low_ = logarithmic_ ? std::pow(10, std::floor(std::log10(std::max(volumes.front(), 1e-6 * high_)))) : 0;
   }
 
   std::string svg() const {
     std::string body = time_.grid(top, bottom) + scale();
     for (std::size_t track = 0; track < rows_.size(); ++track)
       if (!rows_[track].empty()) body += curve(track);
-    for (const std::size_t track : largest_tracks(20)) body += label(track);
+    std::vector<std::pair<double, double>> labels;
+    for (const std::size_t track : largest_tracks(20)) body += label(track, labels);
     return svg_start(1280, bottom + 56, text("Volume of each track, isovalue ", graph_.isovalue)) + body +
            "</svg>\n";
   }
@@ -53,7 +55,8 @@ class VolumePicture {
   std::string scale() const {
     std::vector<double> values;
     if (logarithmic_)
-      for (double power = low_; power <= high_; power *= 10) values.push_back(power);
+      for (double power = std::round(std::log10(low_)); std::pow(10, power) <= high_; ++power)
+        values.push_back(std::pow(10, power));
     else
       values = ticks(low_, high_, 8);
     std::string svg;
@@ -77,6 +80,7 @@ class VolumePicture {
     if (track.start_type == "birth") add(track.start_time, low_);
     for (const Feature* row : rows_[number]) add(row->time, row->volume);
     if (track.end_type == "death") add(track.end_time, low_);
+    if (rows_[number].size() == 1) path += "h0"; // a dot at least
     return text("<path d=\"", path, "\" fill=\"none\" stroke=\"", colour_of(id),
                 "\" stroke-width=\"2\" stroke-linejoin=\"round\" stroke-linecap=\"round\">",
                 tooltip(text("track ", id)), "</path>\n");
@@ -92,9 +96,14 @@ class VolumePicture {
     return tracks;
   }
 
-  std::string label(std::size_t number) const {
+  // At the track's largest volume, unless others that are there already leave no room.
+  std::string label(std::size_t number, std::vector<std::pair<double, double>>& labels) const {
     const auto peak = *std::ranges::max_element(rows_[number], {}, &Feature::volume);
-    return text("<text x=\"", pixel(time_.x(peak->time)), "\" y=\"", pixel(y(peak->volume) - 6),
+    const double x = time_.x(peak->time), at = y(peak->volume) - 6;
+    for (const auto& [other_x, other_y] : labels)
+      if (std::abs(other_x - x) < 24 && std::abs(other_y - at) < 11) return "";
+    labels.emplace_back(x, at);
+    return text("<text x=\"", pixel(x), "\" y=\"", pixel(at),
                 "\" text-anchor=\"middle\" font-size=\"11\" fill=\"",
                 colour_of(static_cast<std::int64_t>(number)),
                 "\" stroke=\"#fff\" stroke-width=\"3\" paint-order=\"stroke\">", number, "</text>\n");
