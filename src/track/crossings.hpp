@@ -21,7 +21,8 @@ class Crossings {
     std::array<std::int64_t, D> index{};
     for (std::size_t row = 0; row < lower_->rows(); ++row) {
       first_.push_back(static_cast<std::uint32_t>(times_.size()));
-      for (std::size_t word = 0; word < lower_->words(); ++word) {
+      const bool alike = lower_->uniform(row) == upper_->uniform(row) && lower_->uniform(row) != 1;
+      for (std::size_t word = 0; word < lower_->words() && !alike; ++word) {
         std::uint64_t changed = changes(row, word);
         if (changed == 0) continue;
         const T* samples = &slab.at(index);

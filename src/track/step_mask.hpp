@@ -16,29 +16,37 @@ class StepMask {
     words_ = static_cast<std::size_t>((dims[0] + 63) / 64);
     for (int axis = 1; axis < S; ++axis) rows_ *= static_cast<std::size_t>(dims[axis]);
     bits_.resize(rows_ * words_);
-    std::vector<T> gathered(step.strides[0] == 1 ? 0 : static_cast<std::size_t>(dims[0]));
+    uniform_.resize(rows_);
+    const auto plane_rows = static_cast<std::size_t>(dims[1]);
+    std::vector<T> gathered(step.strides[0] == 1 ? 0 : static_cast<std::size_t>(dims[0] * dims[1]));
     std::array<std::int64_t, S> index{};
-    for (std::size_t row = 0; row < rows_; ++row) {
-      const T* samples = &step.at(index);
+    for (std::size_t row = 0; row < rows_;
+         row += plane_rows) { // rows of one index along all axes but 0 and 1
+      SampleRows rows{reinterpret_cast<const std::byte*>(&step.at(index)), dims[1],
+                      step.strides[1] * static_cast<std::int64_t>(sizeof(T)), dims[0]};
       if (!gathered.empty()) {
-        kernels.gather(reinterpret_cast<const std::byte*>(samples), step.strides[0], dims[0],
-                       reinterpret_cast<std::byte*>(gathered.data()));
-        samples = gathered.data();
+        for (std::int64_t i = 0; i < dims[1]; ++i)
+          kernels.gather(rows.first + i * rows.bytes_apart, step.strides[0], dims[0],
+                         reinterpret_cast<std::byte*>(gathered.data() + i * dims[0]));
+        rows = {reinterpret_cast<const std::byte*>(gathered.data()), dims[1],
+                dims[0] * static_cast<std::int64_t>(sizeof(T)), dims[0]};
       }
-      has_missing_ |=
-          kernels.inside(reinterpret_cast<const std::byte*>(samples), dims[0], test, &bits_[row * words_]);
-      for (int axis = 1; axis < S && ++index[axis] == dims[axis]; ++axis) index[axis] = 0;
+      has_missing_ |= kernels.inside(rows, test, &bits_[row * words_], &uniform_[row]);
+      for (int axis = 2; axis < S && ++index[axis] == dims[axis]; ++axis) index[axis] = 0;
     }
   }
 
   bool has_missing() const { return has_missing_; }
   std::size_t rows() const { return rows_; }
   std::size_t words() const { return words_; } // of a row
+  // 0 if no sample of the row is inside, 255 if all are, 1 otherwise.
+  std::uint8_t uniform(std::size_t number) const { return uniform_[number]; }
   const std::uint64_t* row(std::size_t number) const { return &bits_[number * words_]; }
   bool inside(std::size_t row_number, std::size_t x) const { return row(row_number)[x / 64] >> (x % 64) & 1; }
 
  private:
   std::vector<std::uint64_t> bits_;
+  std::vector<std::uint8_t> uniform_;
   std::size_t rows_ = 1, words_ = 0;
   bool has_missing_ = false;
 };
