@@ -1,4 +1,4 @@
-// Prints one table: what each workload costs, beside the roof measured in the same run, and what others need.
+// Prints a table: what each workload costs, beside the roof measured in the same run, and what others need.
 //
 // All times are the fastest of the repetitions. "warm" extracts into a mesh that has the memory, "fresh" into
 // a new one; peers are compared with fresh. Select rows as in any Google Benchmark program:
@@ -16,6 +16,7 @@
 #include <benchmark/benchmark.h>
 #include <cstdio>
 #include <map>
+#include <span>
 
 namespace hyperiso::bench {
 namespace {
@@ -34,6 +35,14 @@ constexpr Column columns[] = {
     {"fresh", "fresh ms", 1},  {"cell", "ns/cell", 2},          {"simplex", "ns/simplex", 2},
     {"gigabytes", "GB/s", 1},  {"roof", "x roof", 2},           {"loop", "loop x", 1},
     {"vtk", "VTK x", 1},       {"skimage", "skimage x", 1},     {"gudhi", "GUDHI x", 0},
+};
+constexpr Column tracking_columns[] = {
+    // "all" tetrahedra: of the whole surface
+    {"pair", "all tetrahedra per step pair", 0},
+    {"extracting", "stream ms", 1},
+    {"tracking", "track ms", 1},
+    {"ratio", "track / stream", 2},
+    {"step", "track ms per step pair", 2},
 };
 
 // The field of a workload; the last one is kept, for the rows of one workload follow each other.
@@ -142,23 +151,19 @@ void run_workload(benchmark::State& state, const Workload& workload, int threads
   });
 }
 
-// Prints a Markdown table, a row when it is done.
+// Prints Markdown tables, a row when it is done: one of extraction, then one of tracking.
 class TableReporter : public benchmark::BenchmarkReporter {
  public:
-  bool ReportContext(const Context&) override {
-    std::printf("| workload | threads |");
-    for (const Column& column : columns) std::printf(" %s |", column.title);
-    std::printf("\n| --- | --: |");
-    for (std::size_t i = 0; i < std::size(columns); ++i) std::printf(" --: |");
-    std::printf("\n");
-    return true;
-  }
+  bool ReportContext(const Context&) override { return true; }
   void ReportRuns(const std::vector<Run>& runs) override {
     for (const Run& row : runs) {
+      const std::span<const Column> wanted =
+          row.counters.contains("tracking") ? std::span<const Column>(tracking_columns) : columns;
+      if (wanted.data() != table_.data()) start(wanted);
       const std::string title = row.run_name.function_name;
       std::printf("| %s | %.0f |", title.substr(0, title.rfind(',')).c_str(),
                   row.counters.at("threads").value);
-      for (const Column& column : columns) {
+      for (const Column& column : table_) {
         const auto found = row.counters.find(column.name);
         if (found == row.counters.end())
           std::printf(" |");
@@ -169,6 +174,18 @@ class TableReporter : public benchmark::BenchmarkReporter {
       std::fflush(stdout);
     }
   }
+
+ private:
+  void start(std::span<const Column> wanted) {
+    std::printf("%s| workload | threads |", table_.empty() ? "" : "\n");
+    table_ = wanted;
+    for (const Column& column : table_) std::printf(" %s |", column.title);
+    std::printf("\n| --- | --: |");
+    for (std::size_t i = 0; i < table_.size(); ++i) std::printf(" --: |");
+    std::printf("\n");
+  }
+
+  std::span<const Column> table_; // that was begun
 };
 
 } // namespace

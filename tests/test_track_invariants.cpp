@@ -329,6 +329,67 @@ void compare_with_slices(const Field& field, double isovalue) {
   }
 }
 
+// The symmetries above, on real data.
+void check_symmetries(const Field& data, double isovalue) {
+  const auto view = data.view<float, 4>();
+  const auto field =
+      check::make_field<float, 4>(unit_grid<4>(view.dims()), [&](const std::array<double, 4>& point) {
+        std::array<std::int64_t, 4> index;
+        for (std::size_t axis = 0; axis < 4; ++axis) index[axis] = static_cast<std::int64_t>(point[axis]);
+        return view.at(index);
+      });
+  const auto dims = field.view.dims();
+  const auto graph = track_field(time_field(field), isovalue);
+  const bool has_ties = std::ranges::find(field.samples, static_cast<float>(isovalue)) != field.samples.end();
+  std::int64_t sum = 0;
+  for (const auto& event : graph.events) {
+    sum += static_cast<std::int64_t>(event.arcs_out.size()) - static_cast<std::int64_t>(event.arcs_in.size());
+    if (!has_ties) {
+      EXPECT_EQ(event.time == std::floor(event.time),
+                event.type == EventType::open_start || event.type == EventType::open_end);
+    }
+  }
+  EXPECT_EQ(sum, 0);
+
+  auto negated = field;
+  for (float& sample : negated.samples) sample = -sample;
+  EXPECT_EQ(signature(graph),
+            signature(track_field(time_field(negated), -isovalue, with(Method::hull, Inside::below))));
+
+  const auto backwards = [&](auto index) {
+    index[3] = dims[3] - 1 - index[3];
+    return index;
+  };
+  EXPECT_EQ(signature(graph),
+            signature(track_field(time_field(map_samples<4>(field, backwards, dims)), isovalue), true));
+
+  const auto few_steps = std::array{dims[0], dims[1], dims[2], std::min<std::int64_t>(dims[3], 12)};
+  const auto late = [&](auto index) {
+    index[3] += dims[3] - few_steps[3];
+    return index;
+  };
+  const auto turned = [&](auto index) { return late(std::array{index[2], index[0], index[1], index[3]}); };
+  EXPECT_EQ(
+      signature(track_field(time_field(map_samples<4>(field, late, few_steps)), isovalue,
+                            with(Method::simplicial))),
+      signature(track_field(
+          time_field(map_samples<4>(field, turned, {few_steps[1], few_steps[2], few_steps[0], few_steps[3]})),
+          isovalue, with(Method::simplicial))));
+}
+
+// Read step by step, the history is that of the field in memory.
+void compare_with_stream(FieldReader& reader, double isovalue) {
+  const auto whole = track_field(*reader.read(), isovalue);
+  const auto streamed = track(reader, isovalue);
+  ASSERT_TRUE(streamed) << streamed.error().message;
+  EXPECT_EQ(signature(whole), signature(*streamed));
+  ASSERT_EQ(whole.features.size(), streamed->features.size());
+  for (std::size_t row = 0; row < whole.features.size(); ++row) {
+    EXPECT_EQ(whole.features[row].track, streamed->features[row].track);
+    EXPECT_EQ(whole.features[row].volume, streamed->features[row].volume);
+  }
+}
+
 std::filesystem::path shared_data() {
   if (const char* folder = std::getenv("HYPERISO_SHARED_DATA")) return folder;
   return std::filesystem::path(HYPERISO_SOURCE_FOLDER) / ".." / "shared" / "data";
@@ -338,7 +399,10 @@ TEST(TrackInvariants, water_of_the_dam_break) {
   auto reader = open_field(
       {std::filesystem::path(HYPERISO_SOURCE_FOLDER) / "examples/data/alpha_water_24x24x24x41.nrrd"});
   ASSERT_TRUE(reader) << reader.error().message;
-  compare_with_slices(*(*reader)->read(), 0.5);
+  const auto field = *(*reader)->read();
+  compare_with_slices(field, 0.5);
+  check_symmetries(field, 0.5);
+  compare_with_stream(**reader, 0.5);
 }
 
 TEST(TrackInvariants, viscous_fingers) {
@@ -349,7 +413,10 @@ TEST(TrackInvariants, viscous_fingers) {
   std::ranges::sort(files);
   auto reader = open_field(files);
   ASSERT_TRUE(reader) << reader.error().message;
-  compare_with_slices(*(*reader)->read(), 30);
+  const auto field = *(*reader)->read();
+  compare_with_slices(field, 30);
+  check_symmetries(field, 30);
+  compare_with_stream(**reader, 30);
 }
 
 } // namespace

@@ -1,10 +1,10 @@
 #pragma once
 // The link of a vertex on an edge along time, cell by cell, from tables.
 
-#include "core/union_find.hpp"
 #include "extract/march_table.hpp"
 
-#include <optional>
+#include <algorithm>
+#include <vector>
 
 namespace hyperiso::track_detail {
 
@@ -21,7 +21,7 @@ class CellLinks {
   static constexpr unsigned columns = 1u << space; // edges along time of a cell, by their corner of space
   static constexpr std::uint8_t not_simple = 0x80;
 
-  explicit CellLinks(const MarchTable<D>& table) : table_(table), known_(std::size_t{1} << 15) {
+  explicit CellLinks(const MarchTable<D>& table) : table_(table), known_(std::size_t{1} << known_bits) {
     for (unsigned upper = 1; upper < 1u << D; ++upper)
       for (int axis = 0; axis < D; ++axis)
         if (upper >> axis & 1) {
@@ -36,7 +36,7 @@ class CellLinks {
   // corner j, if there is one, is earlier than this one.
   std::uint8_t poles(std::uint32_t code, unsigned corner, unsigned earlier) {
     const std::uint64_t key = std::uint64_t{code} << 16 | corner << 8 | earlier;
-    std::uint64_t& entry = known_[(key * 0x9e3779b97f4a7c15u) >> 49];
+    std::uint64_t& entry = known_[(key * 0x9e3779b97f4a7c15u) >> (64 - known_bits)];
     if (entry >> 8 != key + 1) entry = (key + 1) << 8 | find_poles(code, corner, earlier);
     return static_cast<std::uint8_t>(entry);
   }
@@ -49,6 +49,7 @@ class CellLinks {
     std::uint8_t lower, upper;
   };
 
+  static constexpr int known_bits = 17;
   static constexpr unsigned time_bit = 1u << space;
 
   bool is_earlier(unsigned slot, unsigned earlier) const {
@@ -64,38 +65,39 @@ class CellLinks {
   }
 
   std::uint8_t find_poles(std::uint32_t code, unsigned corner, unsigned earlier) {
-    const unsigned edge = Edges::slot(corner, corner | time_bit);
-    faces_.clear();
-    for (std::size_t first = table_.first[code]; first < table_.first[code + 1]; first += D) {
-      Face face;
-      std::size_t size = 0;
-      bool has_edge = false;
-      for (std::size_t i = 0; i < D; ++i)
-        if (table_.corners[first + i] == edge)
-          has_edge = true;
-        else if (size < face.size())
-          face[size++] = table_.corners[first + i];
-      if (has_edge) faces_.push_back(face);
-    }
-
+    find_faces(code, Edges::slot(corner, corner | time_bit));
     std::uint8_t poles = 0;
-    std::array<int, space> changes_of_arc{};      // in the facet normal to the axis
-    std::vector<std::array<unsigned, 3>> changes; // two slots and the face that has them
+    std::array<int, space> changes_of_arc{}; // in the facet normal to the axis
+    changes_.clear();
     for (std::size_t face = 0; face < faces_.size(); ++face)
       for (std::size_t i = 0; i < faces_[face].size(); ++i) {
         const unsigned a = faces_[face][i];
+        const bool a_is_earlier = is_earlier(a, earlier);
         for (int axis = 0; axis < space; ++axis)
-          if (is_pole(a, corner, axis) && is_earlier(a, earlier))
+          if (a_is_earlier && is_pole(a, corner, axis))
             poles |= static_cast<std::uint8_t>(1u << (2 * axis + (corner >> axis & 1 ? 0 : 1)));
         for (std::size_t j = 0; j < i; ++j) {
           const unsigned b = faces_[face][j];
-          if (is_earlier(a, earlier) == is_earlier(b, earlier)) continue;
-          changes.push_back({std::min(a, b), std::max(a, b), static_cast<unsigned>(face)});
+          if (a_is_earlier == is_earlier(b, earlier)) continue;
+          changes_.push_back({std::min(a, b) << 8 | std::max(a, b), face});
           for (int axis = 0; axis < space; ++axis)
             if (beside(a, corner, axis) && beside(b, corner, axis)) ++changes_of_arc[axis];
         }
       }
-    return is_simple(changes, changes_of_arc) ? poles : not_simple;
+    return is_simple(changes_of_arc) ? poles : not_simple;
+  }
+
+  // The simplices of the link of an edge, given by its slot.
+  void find_faces(std::uint32_t code, unsigned edge) {
+    faces_.clear();
+    for (std::size_t first = table_.first[code]; first < table_.first[code + 1]; first += D) {
+      Face face;
+      std::size_t size = 0;
+      for (std::size_t i = 0; i < D; ++i)
+        if (table_.corners[first + i] != edge && size < face.size()) face[size++] = table_.corners[first + i];
+      if (std::find(&table_.corners[first], &table_.corners[first] + D, edge) != &table_.corners[first] + D)
+        faces_.push_back(face);
+    }
   }
 
   bool is_pole(unsigned slot, unsigned corner, int axis) const {
@@ -104,33 +106,49 @@ class CellLinks {
     return true;
   }
 
-  bool is_simple(std::vector<std::array<unsigned, 3>>& changes,
-                 const std::array<int, space>& changes_of_arc) const {
-    if constexpr (D == 3) return changes.size() <= 1;
+  // Whether the line between earlier and later, which runs from face to face through the edges that change,
+  // is one that ends on two arcs, or none.
+  bool is_simple(const std::array<int, space>& changes_of_arc) {
+    if constexpr (D == 3) return changes_.size() <= 1;
     int ends = 0;
     for (const int count : changes_of_arc) {
       if (count > 1) return false;
       ends += count;
     }
-    // The line between earlier and later runs from face to face through the edges that change.
-    std::ranges::sort(changes);
-    UnionFind lines(faces_.size());
-    std::vector<bool> passed(faces_.size());
-    std::size_t pieces = 0;
-    for (std::size_t i = 0; i < changes.size(); ++i) {
-      passed[changes[i][2]] = true;
-      if (i > 0 && changes[i][0] == changes[i - 1][0] && changes[i][1] == changes[i - 1][1])
-        lines.unite(changes[i][2], changes[i - 1][2]);
+    if (ends == 0) return changes_.empty();
+    // From one of its ends to the other; what is left would be another line. Each face it passes has two.
+    Change at = changes_[0];
+    std::size_t passed = 0;
+    for (const Change& change : changes_)
+      if (partner(change) == nullptr) at = change;
+    for (const Change* next = &at; next != nullptr; next = partner(at)) {
+      at = *next;
+      for (const Change& other : changes_)
+        if (other.face == at.face && other.edge != at.edge) {
+          at = other;
+          break;
+        }
+      passed += 2;
     }
-    for (std::size_t face = 0; face < faces_.size(); ++face)
-      pieces += passed[face] && lines.find(face) == face;
-    return pieces == (ends > 0);
+    return passed == changes_.size();
+  }
+
+  struct Change {
+    unsigned edge; // of the link: its slots
+    std::size_t face;
+  };
+  // The same edge in the face on its other side.
+  const Change* partner(const Change& change) const {
+    for (const Change& other : changes_)
+      if (other.edge == change.edge && other.face != change.face) return &other;
+    return nullptr;
   }
 
   const MarchTable<D>& table_;
   std::array<Ends, 256> ends_{};     // of each slot
   std::vector<std::uint64_t> known_; // entries: key + 1 and what it gives
   std::vector<Face> faces_;
+  std::vector<Change> changes_; // between earlier and later, of the edges of each face
 };
 
 // Whether a vertex is regular, by the labels of the poles of a link that they describe: earlier and later

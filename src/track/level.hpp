@@ -54,15 +54,16 @@ class Level {
     return arcs;
   }
 
-  // The component of the vertex on an edge within this step (numbered as within a lower step), if M has it.
-  std::optional<std::size_t> component_of(GridEdge edge) const {
-    if (pieces_) return pieces_->piece_at(edge);
+  // The component of a vertex of the surface at this step, if M has it.
+  std::optional<std::size_t> component_of(const StepPieces& pieces, std::size_t vertex) const {
+    if (pieces_) return pieces.piece(vertex);
+    const GridEdge edge = pieces.edge(vertex);
     if (upper_) {
-      if (const auto vertex = upper_->slab.find(edge)) return component_[upper_places_[*vertex]];
+      if (const auto found = upper_->slab.find(edge)) return component_[upper_places_[*found]];
     }
     if (lower_) {
-      const auto vertex = lower_->slab.find(edge + lower_->slab.step_offset);
-      if (vertex && !lower_places_.empty()) return component_[lower_places_[*vertex]];
+      const auto found = lower_->slab.find(edge + lower_->slab.step_offset);
+      if (found && !lower_places_.empty()) return component_[lower_places_[*found]];
     }
     return std::nullopt;
   }

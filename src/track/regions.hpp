@@ -3,9 +3,10 @@
 
 #include "core/sign.hpp"
 #include "core/union_find.hpp"
-#include "hyperiso/extract.hpp"
+#include "track/step_mask.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <unordered_map>
 
 namespace hyperiso::track_detail {
@@ -37,14 +38,15 @@ class Regions {
     Region region;
   };
 
+  // `mask`: of the samples of `field`.
   template <class T>
-  Regions(const FieldView<const T, D>& field, double isovalue, const ExtractOptions& options)
-      : dims_(field.dims()) {
-    if (options.inside == Inside::above)
-      find_runs(field, SignRule<T, true>(isovalue));
+  Regions(const FieldView<const T, D>& field, const StepMask& mask, Method method)
+      : dims_(field.dims()), has_missing_(mask.has_missing()) {
+    if (has_missing_)
+      find_runs(field, mask);
     else
-      find_runs(field, SignRule<T, false>(isovalue));
-    unite(options.method);
+      find_runs(mask);
+    unite(method);
   }
 
   std::size_t count() const { return kinds_.size(); }
@@ -65,20 +67,39 @@ class Regions {
   }
 
  private:
-  template <class T, class Rule>
-  void find_runs(const FieldView<const T, D>& field, Rule rule) {
-    std::int64_t rows = 1;
-    for (int axis = 1; axis < D; ++axis) rows *= dims_[axis];
+  void find_runs(const StepMask& mask) {
+    for (std::size_t number = 0; number < mask.rows(); ++number) {
+      first_.push_back(runs_.size());
+      const std::uint64_t* words = mask.row(number);
+      bool inside = words[0] & 1;
+      for (std::int64_t begin = 0; begin < dims_[0];) {
+        const std::int64_t end = next_not(inside, words, begin);
+        runs_.push_back({begin, end, inside ? Kind::inside : Kind::outside, 0});
+        inside = !inside;
+        begin = end;
+      }
+    }
+    first_.push_back(runs_.size());
+  }
+  // The first sample from `begin` on that is not like it, or the end of the row.
+  std::int64_t next_not(bool inside, const std::uint64_t* words, std::int64_t begin) const {
+    const std::uint64_t like = inside ? ~std::uint64_t{0} : 0;
+    std::int64_t word = begin / 64;
+    std::uint64_t other = (words[word] ^ like) & (~std::uint64_t{0} << (begin % 64));
+    while (other == 0 && 64 * (word + 1) < dims_[0]) other = words[++word] ^ like;
+    return other == 0 ? dims_[0] : std::min(64 * word + std::countr_zero(other), dims_[0]);
+  }
+
+  template <class T>
+  void find_runs(const FieldView<const T, D>& field, const StepMask& mask) {
     std::array<std::int64_t, D> index{};
-    for (std::int64_t number = 0; number < rows; ++number) {
+    for (std::size_t number = 0; number < mask.rows(); ++number) {
       first_.push_back(runs_.size());
       const T* samples = &field.at(index);
       for (std::int64_t x = 0; x < dims_[0]; ++x) {
-        const T value = samples[x * field.strides[0]];
-        const Kind kind = rule.inside(value)  ? Kind::inside
-                          : is_missing(value) ? Kind::missing
-                                              : Kind::outside;
-        has_missing_ |= kind == Kind::missing;
+        const Kind kind = mask.inside(number, static_cast<std::size_t>(x)) ? Kind::inside
+                          : is_missing(samples[x * field.strides[0]])      ? Kind::missing
+                                                                           : Kind::outside;
         if (x == 0 || runs_.back().kind != kind) runs_.push_back({x, x, kind, 0});
         runs_.back().end = x + 1;
       }
@@ -169,7 +190,7 @@ class Regions {
   std::vector<Run> runs_;
   std::vector<std::size_t> first_; // run of each row, and the end
   std::vector<Kind> kinds_;        // of each region
-  bool has_missing_ = false;
+  bool has_missing_;
 };
 
 // The size of the overlap of each pair of regions of two steps that overlap, by shares of samples. Pairs are

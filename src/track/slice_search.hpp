@@ -24,23 +24,21 @@ struct Slice {
     for (const Vertex vertex : slab.simplex(number)) (is_after(vertex) ? after : before) = true;
     return before && after;
   }
-  // Calls use(number) for simplices that meet the slice and share an edge with the given one that does.
+  // Calls use(before, after) for the edges of a simplex that cross the slice.
   template <class Use>
-  void for_each_neighbour(SimplexNumber number, Use&& use) const {
-    std::array<Vertex, C> after{};
-    std::size_t count = 0;
-    for (const Vertex vertex : slab.simplex(number))
-      if (is_after(vertex)) after[count++] = vertex;
-    for (const Vertex vertex : slab.simplex(number)) {
-      if (is_after(vertex)) continue;
-      for (const SimplexNumber other : slab.star(vertex)) {
-        if (other == number) continue;
-        const auto corners = slab.simplex(other);
-        if (std::any_of(after.begin(), after.begin() + static_cast<std::ptrdiff_t>(count), [&](Vertex v) {
-              return std::find(corners.begin(), corners.end(), v) != corners.end();
-            }))
-          use(other);
-      }
+  void for_each_edge(SimplexNumber number, Use&& use) const {
+    const auto corners = slab.simplex(number);
+    for (const Vertex before : corners)
+      if (!is_after(before))
+        for (const Vertex after : corners)
+          if (is_after(after)) use(before, after);
+  }
+  // Calls use(number) for the simplices around an edge that crosses the slice.
+  template <class Use>
+  void for_each_around(Vertex before, Vertex after, Use&& use) const {
+    for (const SimplexNumber number : slab.star(before)) {
+      const auto corners = slab.simplex(number);
+      if (std::find(corners.begin(), corners.end(), after) != corners.end()) use(number);
     }
   }
 };
@@ -62,6 +60,7 @@ class PieceSearch {
     UnionFind groups(seeds.size());
     std::vector<std::vector<SimplexNumber>> found(seeds.size());
     std::vector<std::size_t> next(seeds.size(), 0); // what of `found` has been expanded
+    NumberMap edges;                                // whose simplices are claimed: each is gone round once
     for (std::size_t seed = 0; seed < seeds.size(); ++seed)
       for (const SimplexNumber simplex : seeds[seed]) claim(simplex, seed, groups, found);
 
@@ -76,7 +75,11 @@ class PieceSearch {
       for (std::size_t seed = 0; seed < seeds.size(); ++seed)
         for (int turns = 0; turns < 16 && next[seed] < found[seed].size(); ++turns) {
           const SimplexNumber simplex = found[seed][next[seed]++];
-          slice.for_each_neighbour(simplex, [&](SimplexNumber other) { claim(other, seed, groups, found); });
+          slice.for_each_edge(simplex, [&](Vertex before, Vertex after) {
+            if (!edges.insert(std::uint64_t{before} << 32 | after, 0).second) return;
+            slice.for_each_around(before, after,
+                                  [&](SimplexNumber other) { claim(other, seed, groups, found); });
+          });
         }
       open = unfinished();
     }

@@ -4,6 +4,9 @@
 #include "hyperiso/track.hpp"
 #include "track/level.hpp"
 #include "track/regions.hpp"
+#include "track/step_pieces.hpp"
+
+#include <cmath>
 
 namespace hyperiso::track_detail {
 
@@ -24,10 +27,16 @@ template <class T, int D> // D: of space
 class StepFeatures {
  public:
   // `step`: the samples. `level` knows M there and what became of its components.
-  StepFeatures(const FieldView<const T, D>& step, const SlabSamples<T, D + 1>& samples, bool upper_step,
-               double isovalue, const ExtractOptions& options, const Level<D + 1>& level)
-      : step_(step), samples_(samples), upper_step_(upper_step), regions_(step, isovalue, options) {
-    for (int axis = 0; axis < D; ++axis) share_[axis] = shares(step.grid.axes[axis]);
+  StepFeatures(const FieldView<const T, D>& step, const StepMask& mask, const SlabSamples<T, D + 1>& samples,
+               bool upper_step, Method method, const Level<D + 1>& level)
+      : step_(step), samples_(samples), upper_step_(upper_step), regions_(step, mask, method) {
+    for (int axis = 0; axis < D; ++axis) {
+      const Axis& a = step.grid.axes[axis];
+      share_[axis] = shares(a);
+      low_end_[axis] = std::min(a.coordinate(0), a.coordinate(a.count - 1));
+      length_[axis] = std::abs(a.coordinate(a.count - 1) - a.coordinate(0));
+      far_wall_[axis] = (a.increasing() ? 2u : 1u) << (2 * axis);
+    }
     add_rows(level);
   }
 
@@ -37,9 +46,10 @@ class StepFeatures {
   const std::array<std::vector<double>, D>& share() const { return share_; }
 
   // Measures the rows. Requires the surface at the step, with its edges and double positions.
-  std::vector<Feature> measure(const SimplexMesh<D>& surface, const Level<D + 1>& level) {
-    place_vertices(surface, level);
-    find_pieces(surface);
+  std::vector<Feature> measure(const SimplexMesh<D>& surface, const StepPieces& pieces,
+                               const Level<D + 1>& level) {
+    place_vertices(surface, pieces, level);
+    find_pieces(pieces);
     add_simplices(surface);
     finish_pieces();
     add_samples();
@@ -81,15 +91,7 @@ class StepFeatures {
     counts_.resize(features_.size());
   }
 
-  // The number that an edge of the step has on the grid of the slab, in its lower step.
-  GridEdge edge_in_slab(GridEdge edge) const {
-    const auto row_length = static_cast<GridEdge>(step_.grid.axes[0].count);
-    const GridEdge row_and_direction = edge / row_length;
-    const GridEdge direction = row_and_direction & ((1u << D) - 1);
-    return ((row_and_direction >> D << (D + 1)) | direction) * row_length + edge % row_length;
-  }
-
-  void place_vertices(const SimplexMesh<D>& surface, const Level<D + 1>& level) {
+  void place_vertices(const SimplexMesh<D>& surface, const StepPieces& pieces, const Level<D + 1>& level) {
     const auto dims = step_.dims();
     vertices_.resize(surface.vertex_count());
     vertex_row_.assign(surface.vertex_count(), SIZE_MAX);
@@ -104,8 +106,7 @@ class StepFeatures {
         if (ends.upper[axis] == 0) placed.walls |= static_cast<std::uint8_t>(1u << (2 * axis));
         if (ends.lower[axis] == dims[axis] - 1) placed.walls |= static_cast<std::uint8_t>(2u << (2 * axis));
       }
-      const GridEdge edge = edge_in_slab(surface.edges[vertex]);
-      const auto component = level.component_of(edge);
+      const auto component = level.component_of(pieces, vertex);
       if (!component || row_of(*component) == SIZE_MAX) continue;
       vertex_row_[vertex] = row_of(*component);
       Feature& feature = features_[vertex_row_[vertex]];
@@ -115,26 +116,21 @@ class StepFeatures {
         feature.low[axis] = std::min(feature.low[axis], coordinate);
         feature.high[axis] = std::max(feature.high[axis], coordinate);
       }
-      if (near_wall && !feature.on_wall)
+      if (near_wall && !feature.on_wall) {
+        const GridEdge edge = pieces.edge(vertex);
         feature.on_wall = samples_.place(upper_step_ ? edge + samples_.step_offset() : edge).on_wall;
+      }
     }
   }
 
-  void find_pieces(const SimplexMesh<D>& surface) {
-    UnionFind united(vertices_.size());
-    for (std::size_t corner = 0; corner < surface.simplices.size(); ++corner)
-      united.unite(surface.simplices[corner / D * D], surface.simplices[corner]);
+  void find_pieces(const StepPieces& pieces) {
     piece_.resize(vertices_.size());
     for (std::size_t vertex = 0; vertex < vertices_.size(); ++vertex) {
-      const std::uint64_t root = united.find(vertex);
-      if (root != vertex) {
-        piece_[vertex] = piece_[root];
-        continue;
-      }
-      piece_[vertex] = pieces_.size();
+      piece_[vertex] = pieces.piece(vertex);
+      if (piece_[vertex] < pieces_.size()) continue;
       SurfacePiece& piece = pieces_.emplace_back();
       piece.row = vertex_row_[vertex];
-      piece.first_edge = surface.edges[vertex];
+      piece.first_edge = pieces.edge_at_step(vertex);
       std::tie(piece.inside, piece.outside) = regions_beside(vertices_[vertex]);
     }
   }
@@ -153,19 +149,9 @@ class StepFeatures {
   std::array<double, D> point(const SimplexMesh<D>& surface, std::uint64_t vertex) const {
     std::array<double, D> result;
     for (std::size_t axis = 0; axis < D; ++axis)
-      result[axis] = surface.positions[vertex * D + axis] - low_end(static_cast<int>(axis));
+      result[axis] = surface.positions[vertex * D + axis] - low_end_[axis];
     return result;
   }
-  double low_end(int axis) const {
-    const Axis& a = step_.grid.axes[axis];
-    return std::min(a.coordinate(0), a.coordinate(a.count - 1));
-  }
-  double length(int axis) const {
-    const Axis& a = step_.grid.axes[axis];
-    return std::abs(a.coordinate(a.count - 1) - a.coordinate(0));
-  }
-  // The bit of PlacedVertex::walls for the wall where the axis' coordinate is largest.
-  unsigned far_wall(int axis) const { return (step_.grid.axes[axis].increasing() ? 2u : 1u) << (2 * axis); }
 
   void add_simplices(const SimplexMesh<D>& surface) {
     std::vector<std::array<std::uint64_t, 2>> all_edges; // where walls do not tell which are on the boundary
@@ -226,14 +212,14 @@ class StepFeatures {
         normal[k] =
             0.5 * ((p[1][i] - p[0][i]) * (p[2][j] - p[0][j]) - (p[1][j] - p[0][j]) * (p[2][i] - p[0][i]));
       }
-      area = std::hypot(normal[0], normal[1], normal[2]);
+      area = std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
       piece.signed_volume += normal[0] * mean;
       // The wall at the far end of axis 0 adds its length times the area inside, which is an integral along
       // the rim: x cross the direction of the edge points out of the inside.
       for (std::size_t corner = 0; corner < 3; ++corner) {
         const auto next = (corner + 1) % 3;
-        if (vertices_[corners[corner]].walls & vertices_[corners[next]].walls & far_wall(0))
-          piece.signed_volume -= length(0) * (p[next][2] - p[corner][2]) * 0.5 * (p[next][1] + p[corner][1]);
+        if (vertices_[corners[corner]].walls & vertices_[corners[next]].walls & far_wall_[0])
+          piece.signed_volume -= length_[0] * (p[next][2] - p[corner][2]) * 0.5 * (p[next][1] + p[corner][1]);
       }
     } else {
       area = std::hypot(p[1][0] - p[0][0], p[1][1] - p[0][1]);
@@ -263,7 +249,7 @@ class StepFeatures {
   void add_wall_points(const SimplexMesh<D>& surface) {
     double scale = 1;
     unsigned walls = 0;
-    for (int axis = 0; axis + 1 < D; ++axis) scale *= length(axis), walls |= far_wall(axis);
+    for (int axis = 0; axis + 1 < D; ++axis) scale *= length_[axis], walls |= far_wall_[axis];
     for (std::size_t vertex = 0; vertex < vertices_.size(); ++vertex) {
       if ((vertices_[vertex].walls & walls) != walls) continue;
       const auto [inside, outside] = regions_beside(vertices_[vertex]);
@@ -281,7 +267,7 @@ class StepFeatures {
     for (int axis = 0; axis < D; ++axis) {
       const Axis& a = step_.grid.axes[axis];
       far_corner[axis] = a.increasing() ? a.count - 1 : 0;
-      domain *= length(axis);
+      domain *= length_[axis];
     }
     std::vector<double> volume(regions_.count());
     volume[regions_.at(far_corner)] = domain;
@@ -353,6 +339,8 @@ class StepFeatures {
   bool upper_step_; // which step of `samples_` this is
   Regions<D> regions_;
   std::array<std::vector<double>, D> share_;
+  std::array<double, D> low_end_, length_; // of the domain
+  std::array<unsigned, D> far_wall_; // bit of PlacedVertex::walls: where the axis' coordinate is largest
   std::vector<Feature> features_;
   std::vector<std::size_t> row_of_component_;
   std::vector<std::vector<Region>> row_regions_;

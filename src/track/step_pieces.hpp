@@ -49,6 +49,7 @@ class StepPieces {
                row_length_ +
            x;
   }
+  GridEdge edge_at_step(std::size_t vertex) const { return edges_[vertex]; } // as numbered at the step
   GridEdge first_edge(std::size_t piece) const { return edge(first_[piece]); }
 
   // Requires that the surface crosses the edge.

@@ -106,8 +106,9 @@ class TrackingRun {
     const bool last = !upper;
     const SlabSamples<T, D> samples(window_.slab(last ? step - 1 : step), isovalue_);
     const auto view = samples.field().at_index(D - 1, last ? 1 : 0);
-    auto rows = std::make_unique<StepRows>(view, samples, last, isovalue_, options_.extraction, level);
-    add_features(step, rows->measure(this_step_.surface->mesh, level));
+    auto rows =
+        std::make_unique<StepRows>(view, *this_step_.mask, samples, last, options_.extraction.method, level);
+    add_features(step, rows->measure(this_step_.surface->mesh, this_step_.surface->pieces, level));
     auto& pieces = graph_.pieces.emplace_back();
     for (const SurfacePiece& piece : rows->pieces())
       if (piece.row != SIZE_MAX)

@@ -183,10 +183,9 @@ class GraphPicture {
     return svg;
   }
 
-  std::string mark(EventType type, double x, double at, const std::string& colour,
-                   const std::string& words) const {
-    return text("<g transform=\"translate(", pixel(x), " ", pixel(at), ") scale(", pixel(glyph_),
-                ")\" fill=\"#fff\" stroke=\"", colour, "\" stroke-width=\"", pixel(1.4 / glyph_), "\">",
+  std::string mark(EventType type, double x, double at, double size, const std::string& words) const {
+    return text("<g transform=\"translate(", pixel(x), " ", pixel(at), ") scale(", pixel(size),
+                ")\" fill=\"#fff\" stroke=\"#222\" stroke-width=\"", pixel(1.4 / size), "\">",
                 glyph_shape(type), words.empty() ? "" : tooltip(words), "</g>\n");
   }
 
@@ -223,7 +222,7 @@ class GraphPicture {
     }
     std::string svg;
     for (const Mark& drawn : marks)
-      svg += mark(drawn.type, drawn.x, drawn.y, "#222",
+      svg += mark(drawn.type, drawn.x, drawn.y, glyph_,
                   drawn.more == 0 ? drawn.words : text(drawn.words, "; and ", drawn.more, " more"));
     return svg;
   }
@@ -233,7 +232,7 @@ class GraphPicture {
     const double at = bottom_ + 62;
     std::string svg;
     for (const EventType type : types_) {
-      svg += mark(type, x, at, "#222", "");
+      svg += mark(type, x, at, 5.5, "");
       svg += text("<text x=\"", pixel(x + 10), "\" y=\"", pixel(at + 4), "\">", name_of(type), "</text>\n");
       x += 34 + 7.0 * static_cast<double>(std::string_view(name_of(type)).size());
     }
