@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The files of a tracking graph, read by the programs they are for: they must agree with each other.
 
-    test_tracking_files.py WRITE_TRACKING
+    test_tracking_files.py WRITE_TRACKING HYPERISO
 """
 
 import csv
@@ -17,7 +17,7 @@ from pathlib import Path
 try:
     import networkx
     from vtkmodules.util.numpy_support import vtk_to_numpy
-    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 except ImportError:
     sys.exit(77)
 
@@ -111,7 +111,31 @@ def check_napari(folder, features):
         assert all(isinstance(parent, int) for parents in json.load(file).values() for parent in parents)
 
 
+def check_surfaces(program, folder):
+    """The series of surfaces names the tracks that features.csv has at each step."""
+    field = folder / "field.nrrd"
+    quiet = {"check": True, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    subprocess.run([program, "sample", "gaussians", "--dims", "20,18,16,9", "-o", field], **quiet)
+    subprocess.run([program, "track", field, "--iso", "0.5", "-o", folder / "tracks"], **quiet)
+    features, tracks = (table(folder / "tracks" / f"{name}.csv") for name in ("features", "tracks"))
+    series = list(ElementTree.parse(folder / "tracks" / "tracks.pvd").getroot().iter("DataSet"))
+    assert len(series) == 9 and len(tracks) > 1
+    for step, entry in enumerate(series):
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(str(folder / "tracks" / entry.get("file")))
+        reader.Update()
+        surface = reader.GetOutput()
+        ids, families = (vtk_to_numpy(surface.GetCellData().GetArray(name)) for name in ("track_id", "family_id"))
+        rows = [row for row in features if int(row["step"]) == step]
+        assert set(ids) == {int(row["track_id"]) for row in rows}
+        assert all(int(tracks[track]["family_id"]) == family for track, family in zip(ids, families))
+        assert all(float(row["time"]) == float(entry.get("timestep")) for row in rows)
+        assert surface.GetNumberOfPolys() == len(ids) > 0
+
+
 def main():
+    with tempfile.TemporaryDirectory() as name:
+        check_surfaces(sys.argv[2], Path(name))
     for blobs in (4, 60):
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name) / "made" / "tracks"

@@ -13,11 +13,7 @@ namespace hyperiso::track_detail {
 template <int D>
 class CandidateSearch {
  public:
-  explicit CandidateSearch(const MarchTable<D>& table) : links_(table) {
-    for (unsigned present = 0; present < regular_.size(); ++present)
-      for (unsigned earlier = 0; earlier < 64; ++earlier)
-        regular_[present][earlier] = poles_are_regular(present, earlier, space);
-  }
+  explicit CandidateSearch(const MarchTable<D>& table) : links_(table), pole_table_(space) {}
 
   std::vector<GridEdge> find(const Crossings<D>& crossings) {
     crossings_ = &crossings;
@@ -109,27 +105,22 @@ class CandidateSearch {
     std::size_t number = 0;
     std::array<std::int64_t, space> index{};
     for (std::size_t row = 0; row < crossings_->rows(); ++row) {
-      unsigned present = 3;
-      for (int axis = 1; axis < space; ++axis) present |= sides(axis, index[axis]) << (2 * axis);
-      for (std::size_t word = 0; word < crossings_->lower().words(); ++word)
+      unsigned present = 0;
+      for (int axis = 1; axis < space; ++axis)
+        present |= PoleTable::present(axis, index[axis], crossings_->dims()[axis]);
+      for (std::size_t word = 0; word < crossings_->lower().words() && crossings_->any(row); ++word)
         for (std::uint64_t changed = crossings_->changes(row, word); changed != 0; changed &= changed - 1) {
           const std::size_t x = 64 * word + static_cast<std::size_t>(std::countr_zero(changed));
-          const unsigned all = (present & ~3u) | sides(0, static_cast<std::int64_t>(x));
-          const unsigned poles = poles_[number++];
-          if ((poles & CellLinks<D>::not_simple) || !regular_[all][poles])
+          const unsigned along = PoleTable::present(0, static_cast<std::int64_t>(x), crossings_->dims()[0]);
+          if (!pole_table_.is_regular(present | along, poles_[number++]))
             edges.push_back(crossings_->edge(row, x));
         }
       for (int axis = 1; axis < space && ++index[axis] == crossings_->dims()[axis]; ++axis) index[axis] = 0;
     }
     return edges;
   }
-  // Which poles along an axis lie within the domain: bit 0 the one downwards.
-  unsigned sides(int axis, std::int64_t index) const {
-    return (index > 0 ? 1u : 0u) | (index + 1 < crossings_->dims()[axis] ? 2u : 0u);
-  }
-
   CellLinks<D> links_;
-  std::array<std::array<bool, 64>, 64> regular_{};
+  PoleTable pole_table_;
   const Crossings<D>* crossings_ = nullptr;
   std::vector<std::uint8_t> poles_; // of each crossing that are earlier, or not_simple
 };

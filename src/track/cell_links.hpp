@@ -167,4 +167,25 @@ inline bool poles_are_regular(unsigned present, unsigned earlier, int space) {
   return rim == 0 || ((rim & earlier) != 0 && (rim & later) != 0);
 }
 
+// The same by table.
+class PoleTable {
+ public:
+  explicit PoleTable(int space) {
+    for (unsigned present = 0; present < regular_.size(); ++present)
+      for (unsigned earlier = 0; earlier < 64; ++earlier)
+        regular_[present][earlier] = poles_are_regular(present, earlier, space);
+  }
+  // `poles`: as all cells around the edge tell together.
+  bool is_regular(unsigned present, std::uint8_t poles) const {
+    return poles < 64 && regular_[present][poles];
+  }
+  // Which poles along an axis of `count` samples lie within the domain, for an edge at `index`.
+  static unsigned present(int axis, std::int64_t index, std::int64_t count) {
+    return ((index > 0 ? 1u : 0u) | (index + 1 < count ? 2u : 0u)) << (2 * axis);
+  }
+
+ private:
+  std::array<std::array<bool, 64>, 64> regular_{};
+};
+
 } // namespace hyperiso::track_detail

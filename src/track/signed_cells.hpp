@@ -6,13 +6,13 @@
 
 namespace hyperiso::track_detail {
 
-// The surface of the method `hull` (or `component`) between two steps without missing samples, by their masks
-// alone. A cell is numbered as its lowest sample.
+// The surface of the method `hull` (or `component`) between two steps without missing samples. A cell is
+// numbered as its lowest sample. Where the signs and times come from is for others to say.
 template <int D>
 class SignedCells {
  public:
-  SignedCells(const MarchTable<D>& table, Crossings<D> crossings)
-      : table_(table), crossings_(std::move(crossings)), dims_(crossings_.dims()) {
+  SignedCells(const MarchTable<D>& table, const std::array<std::int64_t, D>& dims)
+      : table_(table), dims_(dims) {
     const auto row_length = static_cast<GridEdge>(dims_[0]);
     for (unsigned upper = 1; upper < 1u << D; ++upper)
       for (int axis = 0; axis < D; ++axis)
@@ -23,8 +23,8 @@ class SignedCells {
           edge_offset_[slot] = (row << D | GridEdge{1} << axis) * row_length + (upper & 1);
         }
   }
+  virtual ~SignedCells() = default;
 
-  const Crossings<D>& crossings() const { return crossings_; }
   const std::array<std::int64_t, D>& dims() const { return dims_; }
 
   // Calls use(cell) for the cells around a grid edge, ascending.
@@ -63,15 +63,17 @@ class SignedCells {
   double time(GridEdge edge) const {
     const auto ends = grid_edge_ends<D>(dims_, edge);
     if (ends.lower[D - 1] == ends.upper[D - 1]) return static_cast<double>(ends.lower[D - 1]);
-    return crossings_.time_at(row_in_step(ends.lower), static_cast<std::size_t>(ends.lower[0]));
+    return time_between(ends.lower);
   }
 
   // Calls use(cell) for all cells that the surface may pass, ascending.
   template <class Use>
   void for_each_cell(Use&& use) const {
     const auto row_length = static_cast<std::uint64_t>(dims_[0]);
+    std::uint64_t rows = 1;
+    for (int axis = 1; axis < D - 1; ++axis) rows *= static_cast<std::uint64_t>(dims_[axis]);
     std::array<std::int64_t, D> index{};
-    for (std::size_t row = 0; row < crossings_.rows(); ++row) {
+    for (std::uint64_t row = 0; row < rows; ++row) {
       bool exists = true;
       for (int axis = 1; axis < D - 1; ++axis) exists &= index[axis] + 1 < dims_[axis];
       if (exists)
@@ -80,24 +82,47 @@ class SignedCells {
     }
   }
 
+ protected:
+  // Whether a sample is inside; the code of a cell in the table; of a sample of the lower step and the one
+  // above it with different signs, where the crossing lies, from 0 to 1.
+  virtual bool inside(const std::array<std::int64_t, D>& sample) const = 0;
+  virtual std::uint32_t code_of(std::uint64_t cell) const = 0;
+  virtual double time_between(const std::array<std::int64_t, D>& lower) const = 0;
+
+ private:
+  const MarchTable<D>& table_;
+  std::array<std::int64_t, D> dims_;
+  std::array<GridEdge, 256> edge_offset_{};
+};
+
+// By the masks of whole steps.
+template <int D>
+class MaskedCells final : public SignedCells<D> {
+ public:
+  MaskedCells(const MarchTable<D>& table, Crossings<D> crossings)
+      : SignedCells<D>(table, crossings.dims()), crossings_(std::move(crossings)) {}
+
  private:
   std::size_t row_in_step(const std::array<std::int64_t, D>& sample) const {
     std::int64_t row = 0;
-    for (int axis = D - 2; axis > 0; --axis) row = row * dims_[axis] + sample[axis];
+    for (int axis = D - 2; axis > 0; --axis) row = row * this->dims()[axis] + sample[axis];
     return static_cast<std::size_t>(row);
   }
-  bool inside(const std::array<std::int64_t, D>& sample) const {
+  bool inside(const std::array<std::int64_t, D>& sample) const override {
     const StepMask& step = sample[D - 1] == 0 ? crossings_.lower() : crossings_.upper();
     return step.inside(row_in_step(sample), static_cast<std::size_t>(sample[0]));
   }
-  std::uint32_t code_of(std::uint64_t cell) const {
-    const auto row_length = static_cast<std::uint64_t>(dims_[0]);
+  double time_between(const std::array<std::int64_t, D>& lower) const override {
+    return crossings_.time_at(row_in_step(lower), static_cast<std::size_t>(lower[0]));
+  }
+  std::uint32_t code_of(std::uint64_t cell) const override {
+    const auto row_length = static_cast<std::uint64_t>(this->dims()[0]);
     const std::uint64_t row = cell / row_length, x = cell % row_length;
     std::uint32_t code = 0;
     for (unsigned place = 0; place < 1u << (D - 1); ++place) { // in a column: bit j stands for axis j + 1
       std::uint64_t offset = 0;
       for (int axis = D - 2; axis > 0; --axis)
-        offset = offset * static_cast<std::uint64_t>(dims_[axis]) + (place >> (axis - 1) & 1);
+        offset = offset * static_cast<std::uint64_t>(this->dims()[axis]) + (place >> (axis - 1) & 1);
       const StepMask& step = place >> (D - 2) & 1 ? crossings_.upper() : crossings_.lower();
       code |= static_cast<std::uint32_t>(step.inside(row + offset, x)) << place;
       code |= static_cast<std::uint32_t>(step.inside(row + offset, x + 1)) << (place + (1u << (D - 1)));
@@ -105,10 +130,7 @@ class SignedCells {
     return code;
   }
 
-  const MarchTable<D>& table_;
   Crossings<D> crossings_;
-  std::array<std::int64_t, D> dims_;
-  std::array<GridEdge, 256> edge_offset_{};
 };
 
 } // namespace hyperiso::track_detail

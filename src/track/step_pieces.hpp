@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace hyperiso::track_detail {
@@ -40,6 +41,28 @@ class StepPieces {
     }
   }
 
+  // Of vertices on `edges`, as numbered in the lower step of a slab, in any order; `piece`: of each, any
+  // numbers below their count.
+  StepPieces(const std::vector<GridEdge>& edges, const std::vector<std::uint32_t>& piece, GridEdge row_length,
+             int space)
+      : row_length_(row_length), space_(space) {
+    std::vector<std::pair<GridEdge, std::uint32_t>> vertices;
+    for (std::size_t vertex = 0; vertex < edges.size(); ++vertex)
+      vertices.emplace_back(at_step(edges[vertex]), piece[vertex]);
+    std::ranges::sort(vertices);
+    std::vector<std::uint32_t> number(edges.size(), UINT32_MAX); // of pieces
+    for (const auto& [edge, name] : vertices) {
+      if (number[name] == UINT32_MAX) {
+        number[name] = static_cast<std::uint32_t>(first_.size());
+        first_.push_back(static_cast<std::uint32_t>(piece_.size()));
+      }
+      piece_.push_back(number[name]);
+      own_edges_.push_back(edge);
+    }
+    edges_ = own_edges_;
+  }
+  StepPieces(const StepPieces&) = delete; // refers to itself
+
   std::size_t count() const { return first_.size(); }
   std::size_t vertex_count() const { return edges_.size(); }
   std::uint32_t piece(std::size_t vertex) const { return piece_[vertex]; }
@@ -55,22 +78,26 @@ class StepPieces {
   // Requires that the surface crosses the edge.
   std::uint32_t piece_at(GridEdge edge) const { return piece_[*find(edge)]; }
   std::optional<std::size_t> find(GridEdge edge) const {
-    const GridEdge row_and_direction = edge / row_length_;
-    const GridEdge at_step =
-        ((row_and_direction >> (space_ + 1) << space_) | (row_and_direction & directions())) * row_length_ +
-        edge % row_length_;
-    const auto place = std::ranges::lower_bound(edges_, at_step);
-    if (place == edges_.end() || *place != at_step) return std::nullopt;
+    const GridEdge wanted = at_step(edge);
+    const auto place = std::ranges::lower_bound(edges_, wanted);
+    if (place == edges_.end() || *place != wanted) return std::nullopt;
     return static_cast<std::size_t>(place - edges_.begin());
   }
 
  private:
+  GridEdge at_step(GridEdge edge) const {
+    const GridEdge row_and_direction = edge / row_length_;
+    return ((row_and_direction >> (space_ + 1) << space_) | (row_and_direction & directions())) *
+               row_length_ +
+           edge % row_length_;
+  }
   GridEdge directions() const { return (GridEdge{1} << space_) - 1; }
   std::uint32_t root(std::uint32_t vertex) {
     while (piece_[vertex] != vertex) vertex = piece_[vertex] = piece_[piece_[vertex]];
     return vertex;
   }
 
+  std::vector<GridEdge> own_edges_; // where no mesh keeps them
   std::span<const GridEdge> edges_; // as numbered at the step
   GridEdge row_length_;
   int space_;

@@ -56,7 +56,7 @@ class SurfaceSteps {
       Crossings<D> crossings(samples.field(), isovalue_, lower.mask, upper.mask);
       if (!crossings.has_ties()) {
         std::vector<GridEdge> candidates = candidates_->find(crossings);
-        Slab<D> slab(std::make_unique<SignedCells<D>>(*table_, std::move(crossings)));
+        Slab<D> slab(std::make_unique<MaskedCells<D>>(*table_, std::move(crossings)));
         describe(slab, samples);
         return std::make_unique<Sweep<D>>(std::move(slab), lower_time, upper_time, lower.pieces(),
                                           std::move(candidates));
