@@ -53,7 +53,7 @@ void add_edges(Mesh& mesh) {
   for (std::size_t axis = 0; axis < D; ++axis) {
     dims[axis] = 9 + static_cast<std::int64_t>(axis);
     mesh.grid_axes.push_back(
-        {dims[axis], 3, 0.1, -0.3, {}, std::string(1, "xyzt"[axis]), axis < 3 ? "mm" : "\u00b5s"});
+        {dims[axis], 3, 0.1, -0.3, {}, std::string(1, "xyztv"[axis]), axis < 3 ? "mm" : "\u00b5s"});
   }
   mesh.grid_axes[D - 1].coordinates.resize(static_cast<std::size_t>(dims[D - 1]));
   std::iota(mesh.grid_axes[D - 1].coordinates.begin(), mesh.grid_axes[D - 1].coordinates.end(), 0.5);

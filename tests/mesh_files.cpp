@@ -101,6 +101,7 @@ void write_all(const std::filesystem::path& folder) {
     writer.write("tetrahedra_r3" + precision, random_mesh({3, 3, f64}), {"vtu"});
     writer.write("triangles_r4" + precision, random_mesh({4, 2, f64}), {"vtu"});
     writer.write("tetrahedra_r4" + precision, random_mesh({4, 3, f64}), {"vtu"});
+    writer.write("4_simplices_r4" + precision, random_mesh({4, 4, f64}), {"vtu"});
   }
   Mesh heat = random_mesh({3, 2});
   heat.attributes.resize(2); // those of vertices

@@ -377,6 +377,22 @@ class Interval(Case):
         self.assertEqual(len(self.interval("ball.nrrd", "--range", "0.3:0.7:5")["levels"]), 5)
         self.assertIn("shell.vtu", self.files())
 
+    def test_a_volume_through_time_cut_at_a_step_is_that_of_the_step(self):
+        self.sample("ball", "9,9,9,5", "moving.nrrd")
+        through_time = self.interval("moving.nrrd", "--range", "0.3:0.7", "-o", "moving.vtu")
+        self.assertEqual(through_time["dimension"], 4)
+        self.assertEqual(through_time["content"], through_time["measure"]["content"])
+        self.assertEqual(through_time["inverted_simplices"], through_time["measure"]["inverted_simplices"])
+        step = self.interval("moving.nrrd", "--range", "0.3:0.7", "--steps", "2:3")
+        cut = self.ok("slice", "moving.vtu", "--time", "0.5", "--measure", "--json", "-o", "cut.vtu").json()
+        for key in ["vertices", "simplices"]:
+            self.assertEqual(cut[key], step[key])
+        self.assertEqual(cut["measure"]["euler_characteristic"], step["measure"]["euler_characteristic"])
+        self.assertAlmostEqual(cut["measure"]["content"], step["content"], 12)
+        between = self.ok("slice", "moving.vtu", "--time", "0.1", "--measure", "--json").json()
+        self.assertEqual(between["measure"]["bad_facets"], 0)
+        self.assert_refused(2, "interval", "moving.nrrd", "--range", "0.3:0.7", "-o", "moving.ply")
+
     def test_ranges_that_mean_nothing(self):
         field = self.sample()
         for bad in ["0.7:0.3", "0.5", "0.5:0.5", "0:1:1", "0:1:x", "a:b", "nan:1", "1:2:3:4"]:

@@ -76,7 +76,7 @@ std::multiset<std::multiset<std::vector<double>>> projected(const Mesh& mesh, in
 
 template <int D>
 void expect_the_lifted_surface(const OwnedField<float, D>& field, const std::vector<double>& levels) {
-  for (const Method method : {Method::hull, Method::simplicial})
+  for (const Method method : {Method::hull, Method::component, Method::simplicial})
     for (const Inside inside : {Inside::above, Inside::below})
       for (const LevelAxis place : {LevelAxis::last, LevelAxis::first}) {
         const auto options = options_of(method, inside, place);
@@ -97,6 +97,8 @@ TEST(Interval, is_the_projected_surface_of_the_lifted_field) {
     expect_the_lifted_surface(random_field<float, 2>({6, 70}, 6, seed), {-3, -1, 0, 4});
     expect_the_lifted_surface(random_field<float, 3>({5, 4, 6}, 6, seed), {-2, 3});
     expect_the_lifted_surface(random_field<float, 3>({4, 5, 3}, 3, seed), {-1, 0, 2});
+    expect_the_lifted_surface(random_field<float, 4>({3, 3, 2, 3}, 4, seed), {-2, 3});
+    expect_the_lifted_surface(random_field<float, 4>({2, 3, 3, 2}, 3, seed), {-1, 0, 2});
   }
 }
 
@@ -121,36 +123,82 @@ TEST(Interval, sphere_of_paper_000) {
   EXPECT_EQ(found->inverted_simplices, 0u);
 }
 
-// The volume between two spheres, at second order in the grid, by both methods.
-TEST(Interval, volume_of_a_shell) {
-  using std::numbers::pi;
+// The volume between two spheres, at second order in the grid.
+template <int D>
+void expect_shell(double unit_ball, std::array<std::int64_t, 2> cells, std::int64_t euler_characteristic) {
   for (const Method method : {Method::hull, Method::simplicial}) {
     std::array<double, 2> error;
-    for (int level = 0; level < 2; ++level) {
-      const auto field = make_field<double, 3>(box_grid<3>((16 << level) + 1, -1, 1), [](const auto& p) {
-        return std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+    for (std::size_t grid = 0; grid < 2; ++grid) {
+      const auto field = make_field<double, D>(box_grid<D>(cells[grid] + 1, -1, 1), [](const auto& p) {
+        return std::sqrt(std::inner_product(p.begin(), p.end(), p.begin(), 0.));
       });
       const auto found = measure(filled(field, {0.5, 0.8}, options_of(method)));
       EXPECT_EQ(found->bad_facets, 0u);
-      EXPECT_EQ(found->euler_characteristic, 2);
-      error[static_cast<std::size_t>(level)] = std::abs(found->content - 4. / 3 * pi * (0.512 - 0.125));
+      EXPECT_EQ(found->euler_characteristic, euler_characteristic);
+      error[grid] = std::abs(found->content - unit_ball * (std::pow(0.8, D) - std::pow(0.5, D)));
     }
-    EXPECT_GT(std::log2(error[0] / error[1]), 1.7);
+    const double refined = static_cast<double>(cells[1]) / static_cast<double>(cells[0]);
+    EXPECT_GT(std::log(error[0] / error[1]) / std::log(refined), 1.7);
+  }
+}
+
+TEST(Interval, volume_of_a_shell) {
+  using std::numbers::pi;
+  expect_shell<2>(pi, {8, 64}, 0);
+  expect_shell<3>(4. / 3 * pi, {16, 32}, 2);
+  expect_shell<4>(pi * pi / 2, {8, 12}, 0);
+}
+
+// `box` is the content of the grid. The last field has many samples equal to the levels.
+template <int D>
+void expect_sums(const std::array<std::int64_t, D>& dims, double box) {
+  for (const int range : {1000, 3}) {
+    const auto field = random_field<double, D>(dims, range, 4);
+    const auto content = [&](std::vector<double> levels) {
+      const auto found = measure(filled(field, std::move(levels), options_of(Method::simplicial)));
+      EXPECT_EQ(found->inverted_simplices, 0u);
+      EXPECT_EQ(found->bad_facets, 0u);
+      return found->content;
+    };
+    const double low = -range / 3, middle = 0, high = range * 2 / 3;
+    EXPECT_NEAR(content({low, middle}) + content({middle, high}), content({low, high}), 1e-12 * box);
+    EXPECT_NEAR(content({low, middle, middle + 1, high}), content({low, high}), 1e-12 * box);
+    EXPECT_NEAR(content({-2. * range, 2. * range}), box, 1e-12 * box) << "the whole box";
   }
 }
 
 TEST(Interval, simplicial_volumes_add_up_and_never_fold) {
-  const auto field = random_field<double, 3>({6, 5, 6}, 1000, 4);
-  const auto content = [&](double low, double high) {
-    const auto found = measure(filled(field, {low, high}, options_of(Method::simplicial)));
-    EXPECT_EQ(found->inverted_simplices, 0u);
-    EXPECT_EQ(found->bad_facets, 0u);
-    return found->content;
-  };
-  EXPECT_NEAR(content(-300.5, 20.5) + content(20.5, 700.5), content(-300.5, 700.5), 1e-9);
-  EXPECT_NEAR(content(-2000, 2000), 5 * 4 * 5, 1e-9) << "the whole box";
-  const auto several = measure(filled(field, {-300.5, 20.5, 100, 700.5}, options_of(Method::simplicial)));
-  EXPECT_NEAR(several->content, content(-300.5, 700.5), 1e-9);
+  expect_sums<2>({9, 8}, 8 * 7);
+  expect_sums<3>({6, 5, 6}, 5 * 4 * 5);
+  expect_sums<4>({3, 4, 3, 4}, 2 * 3 * 2 * 3);
+}
+
+// The boundary of a volume is the two surfaces and the walls: without walls, the levels' own surfaces.
+template <int D>
+void expect_bounded_by_its_levels(const std::array<std::int64_t, D>& dims) {
+  for (const Method method : {Method::hull, Method::component, Method::simplicial})
+    for (const int range : {3, 1000}) {
+      auto field = random_field<float, D>(dims, range, 11);
+      std::size_t sample = 0;
+      for_each_index<D>(dims, [&](const auto& index) {
+        for (int axis = 0; axis < D; ++axis)
+          if (index[axis] == 0 || index[axis] == dims[axis] - 1) field.samples[sample] = -5.f * range;
+        ++sample;
+      });
+      const double low = -range / 3, high = range / 3;
+      const auto volume = filled(field, {low, high}, options_of(method));
+      const auto found = measure(volume);
+      EXPECT_EQ(found->bad_facets, 0u);
+      const ExtractOptions options = options_of(method);
+      EXPECT_EQ(found->boundary_facets, extracted(field, low, options).simplex_count() +
+                                            extracted(field, high, options).simplex_count());
+    }
+}
+
+TEST(Interval, is_bounded_by_the_surfaces_of_its_levels) {
+  expect_bounded_by_its_levels<2>({11, 9});
+  expect_bounded_by_its_levels<3>({6, 7, 6});
+  expect_bounded_by_its_levels<4>({5, 5, 4, 5});
 }
 
 // On random values the hull table folds a few simplices; on falling axes, in 2D and 3D and by both labels the
@@ -176,6 +224,7 @@ void expect_positive(const std::array<std::int64_t, D>& dims) {
 TEST(Interval, simplices_are_positive) {
   expect_positive<2>({14, 13});
   expect_positive<3>({6, 7, 6});
+  expect_positive<4>({4, 4, 3, 4});
 }
 
 TEST(Interval, attributes_tell_level_and_isovalue) {

@@ -85,7 +85,7 @@ Status read_bytes(const std::string& content, const std::string& suffix) {
   return mesh ? Status() : mesh.error();
 }
 
-const MeshKind vtk_kinds[] = {{2, 1}, {2, 2}, {3, 1}, {3, 2}, {3, 3}, {4, 1}, {4, 2}, {4, 3}};
+const MeshKind vtk_kinds[] = {{2, 1}, {2, 2}, {3, 1}, {3, 2}, {3, 3}, {4, 1}, {4, 2}, {4, 3}, {4, 4}};
 
 } // namespace
 
@@ -130,13 +130,18 @@ TEST(Vtk, mesh_without_vertices) {
 // A slice at a stored step is exact only with the grid edges that the mesh was written with.
 TEST(Vtk, grid_edges_and_axes_are_restored) {
   const TemporaryFolder folder;
-  Mesh meshes[] = {random_mesh({2, 1}), random_mesh({3, 2}), random_mesh({4, 3})};
+  Mesh meshes[] = {random_mesh({2, 1}), random_mesh({3, 2}), random_mesh({4, 3}),
+                   random_mesh({2, 2}), random_mesh({3, 3}), random_mesh({4, 4})};
   add_edges<2>(meshes[0]);
   add_edges<3>(meshes[1]);
   add_edges<4>(meshes[2]);
+  add_edges<3>(meshes[3]); // of volumes: with an axis of levels
+  add_edges<4>(meshes[4]);
+  add_edges<5>(meshes[5]);
   for (const Mesh& mesh : meshes) {
     expect_equal_provenance(read_back(mesh, folder / "a.vtu"), mesh);
-    if (mesh.dimension < 4) expect_equal_provenance(read_back(mesh, folder / "a.vtp"), mesh);
+    if (mesh.dimension < 4 && mesh.simplex_dimension < 3)
+      expect_equal_provenance(read_back(mesh, folder / "a.vtp"), mesh);
     const Mesh without = read_back(mesh, folder / "a.vtu", {.keep_edges = false});
     EXPECT_TRUE(without.edges.empty());
     EXPECT_TRUE(without.grid_axes.empty());
@@ -447,7 +452,7 @@ TEST(WriteMesh, meshes_that_a_format_cannot_hold) {
     expect_error(check_mesh_format(kind.dimension, kind.simplex_dimension, folder / name),
                  Code::file_unsupported, what);
   };
-  expect({4, 4}, "a.vtu", "pentatopes");
+  expect({4, 4}, "a.vtp", "4-simplices in 4 dimensions; formats that do: vtu");
   expect({4, 3}, "a.vtp", "vtu");
   expect({4, 3}, "a.ply", "vtu");
   expect({3, 3}, "a.stl", "vtu");
@@ -479,7 +484,7 @@ TEST(WriteMesh, meshes_that_contradict_themselves) {
 TEST(WriteMesh, existing_file_stays_when_writing_fails) {
   const TemporaryFolder folder;
   write_content(folder / "a.vtu", "old");
-  EXPECT_FALSE(write_mesh(random_mesh({4, 4}), folder / "a.vtu"));
+  EXPECT_FALSE(write_mesh(random_mesh({5, 4}), folder / "a.vtu"));
   EXPECT_EQ(content_of(folder / "a.vtu"), "old");
   expect_error(write_mesh(random_mesh({3, 2}), folder / "missing" / "a.vtu"), Code::file_unwritable, "a.vtu");
 }

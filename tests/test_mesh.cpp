@@ -106,6 +106,20 @@ TEST(Measure, volumes_count_inverted_simplices) {
   EXPECT_TRUE(found->vector_area.empty());
 }
 
+TEST(Measure, contents_alone_are_those_of_the_whole) {
+  for (const Mesh& mesh : {simplex_boundary(4), make_mesh(2, 2, {0, 0, 1, 0, 0, 1, 1, 1}, {0, 1, 2, 1, 2, 3}),
+                           make_mesh(2, 1, {0, 0, 1, 1}, {0, 1, 1, 1})}) {
+    const auto whole = measure(mesh);
+    const auto alone = measure_contents(mesh);
+    ASSERT_TRUE(whole && alone);
+    EXPECT_EQ(alone->content, whole->content);
+    EXPECT_EQ(alone->vector_area, whole->vector_area);
+    EXPECT_EQ(alone->inverted_simplices, whole->inverted_simplices);
+    EXPECT_EQ(alone->zero_content_simplices, whole->zero_content_simplices);
+  }
+  EXPECT_EQ(measure_contents(make_mesh(2, 1, {0, 0, 1, 1}, {0, 2})).error().code, Code::invalid_argument);
+}
+
 TEST(Measure, empty_mesh_and_bad_index) {
   const auto found = measure(Mesh(4, 3));
   ASSERT_TRUE(found);

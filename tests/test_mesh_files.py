@@ -25,7 +25,7 @@ try:
 except ImportError:
     meshio = None
 
-VTK_CELL_TYPES = {2: vtk.VTK_LINE, 3: vtk.VTK_TRIANGLE, 4: vtk.VTK_TETRA}
+VTK_CELL_TYPES = {2: vtk.VTK_LINE, 3: vtk.VTK_TRIANGLE, 4: vtk.VTK_TETRA, 5: vtk.VTK_POLY_VERTEX}
 FLOAT = {False: numpy.float32, True: numpy.float64}
 
 

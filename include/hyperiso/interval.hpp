@@ -35,7 +35,10 @@ struct IntervalOptions : ExtractOptions {
 /// five times the number. `inside` decides which side an ambiguous cell keeps together, not which volume is
 /// filled.
 ///
-/// Types: all of SampleType; D = 2, 3. Cost: that of an extraction of the lifted field.
+/// A volume of a 4D field, whose last axis is time, is one through time (paper 003 section 4): `slice` of it
+/// at a stored time is the volume of that step, vertex for vertex and simplex for simplex.
+///
+/// Types: all of SampleType; D = 2, 3, 4. Cost: that of an extraction of the lifted field.
 /// Errors: those of `extract`; invalid_isovalue if there are fewer than two levels or they do not increase.
 template <class T, int D>
 Result<VolumeMesh<D>> interval(const FieldView<const T, D>& field, std::span<const double> levels,

@@ -130,7 +130,7 @@ struct WriteMeshOptions {
 /// or device, such as /dev/stdout, is written as it is).
 ///
 /// | format   | simplices                          | of the mesh it keeps                                 |
-/// | vtu      | segments, triangles, tetrahedra    | all, to the bit                                      |
+/// | vtu      | segments to 4-simplices            | all, to the bit                                      |
 /// | vtp      | segments, triangles; not in R^4    | all, to the bit                                      |
 /// | ply      | triangles; not in R^4              | positions as they are; attributes, one property a    |
 /// |          |                                    | component: NAME, or NAME_0, NAME_1, ...; 64-bit      |
@@ -143,8 +143,10 @@ struct WriteMeshOptions {
 /// |          | not in R^4                         |                                                      |
 ///
 /// Points of a mesh in R^2 get z = 0. Of a mesh in R^4 they are x, y, z; point data `t` is the fourth
-/// coordinate and `xyzt` has all four, so that a contour of `t` in ParaView is a slice in time. vtu and vtp
-/// hold their arrays inline, base64 of zlib, the only encoding that all of Debian's VTK programs read.
+/// coordinate and `xyzt` has all four, so that a contour of `t` in ParaView is a slice in time. VTK has no
+/// cell for 4-simplices: they are poly vertices of five points, whole for `read_mesh`, points to others. vtu
+/// and vtp hold their arrays inline, base64 of zlib, the only encoding that all of Debian's VTK programs
+/// read.
 ///
 /// Cost: a vtu of four million tetrahedra takes about a second on one core, the others less; memory: one
 /// block of an array (in a pipe: one array). Errors: file_unwritable; file_unsupported where the format

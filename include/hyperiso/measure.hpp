@@ -9,18 +9,22 @@
 
 namespace hyperiso {
 
-/// What `measure` found; K is the dimension of the simplices, D that of the space.
-struct Measure {
+/// Sums over the simplices of a mesh; K is their dimension, D that of the space.
+struct Contents {
+  double content = 0;                   ///< total K-volume, unsigned
+  std::vector<double> vector_area;      ///< K = D-1: sum of content times unit normal, D numbers; else empty
+  std::uint64_t inverted_simplices = 0; ///< K = D: of negative orientation
+  std::uint64_t zero_content_simplices = 0; ///< whose computed content is exactly 0
+};
+
+/// What `measure` found.
+struct Measure : Contents {
   std::uint64_t components = 0; ///< connected through shared vertices
   std::int64_t euler_characteristic =
       0;                             ///< vertices - edges + triangles - ..., over the faces of all simplices
   std::uint64_t boundary_facets = 0; ///< (K-1)-faces of exactly one simplex
   std::uint64_t bad_facets = 0; ///< (K-1)-faces of three or more, or of two that orient it alike; must be 0
   bool closed = false;          ///< no boundary facets
-  double content = 0;           ///< total K-volume, unsigned
-  std::vector<double> vector_area;      ///< K = D-1: sum of content times unit normal, D numbers; else empty
-  std::uint64_t inverted_simplices = 0; ///< K = D: of negative orientation
-  std::uint64_t zero_content_simplices = 0; ///< whose computed content is exactly 0
 };
 
 /// Measures a mesh of (D-1)- or D-simplices in R^D, 2 <= D <= 8. Sums run in the order of the simplices: the
@@ -28,5 +32,8 @@ struct Measure {
 /// each vertex; 8 bytes of memory per corner of a simplex and 16 per vertex. Errors: out_of_memory;
 /// invalid_argument for other dimensions or an index out of range.
 Result<Measure> measure(const Mesh& mesh);
+
+/// The Contents of that alone, to the bit: one pass over the simplices, no memory. The same errors.
+Result<Contents> measure_contents(const Mesh& mesh);
 
 } // namespace hyperiso

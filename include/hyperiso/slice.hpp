@@ -72,7 +72,8 @@ struct SliceOptions {
 /// A plane that holds samples (across an axis, at a coordinate of `mesh.grid_axes`) gives the trace of the
 /// mesh there instead: the mesh that `extract` makes of these samples alone, vertex for vertex and simplex
 /// for simplex, with its own grid edges, wherever a cell without NaN touches them. That needs `mesh.edges`;
-/// without them such a plane is cut like any other.
+/// without them such a plane is cut like any other. Of an interval volume it is the volume that `interval`
+/// makes of these samples.
 ///
 /// Attributes come along: those of vertices interpolated along the edges, those of simplices copied. Of the
 /// attribute `normal` the part in the plane is left, in the coordinates of the cut and of length 1: it is the

@@ -57,6 +57,10 @@ Json json_of(const Outcome& outcome, const FieldMeshOptions& options, const Fiel
   object["seconds"] = {
       {"read", outcome.read_seconds}, {"extract", outcome.extract_seconds}, {"write", outcome.write_seconds}};
   object["peak_memory_bytes"] = peak_memory();
+  if (outcome.contents) {
+    object["content"] = outcome.contents->content;
+    object["inverted_simplices"] = outcome.contents->inverted_simplices;
+  }
   if (outcome.measure) object["measure"] = json_of(*outcome.measure);
   if (outcome.self_intersections) object["self_intersections"] = json_of(*outcome.self_intersections);
   return object;
@@ -66,7 +70,10 @@ void add_outcome(Report& report, const Outcome& outcome) {
   report.add("active cells", grouped(outcome.active_cells));
   report.add("vertices", grouped(outcome.vertices));
   report.add(simplex_noun(outcome.simplex_dimension), grouped(outcome.simplices));
-  if (outcome.measure) add_measure(report, *outcome.measure, outcome.simplex_dimension);
+  if (outcome.measure)
+    add_measure(report, *outcome.measure, outcome.simplex_dimension);
+  else if (outcome.contents)
+    add_contents(report, *outcome.contents, outcome.simplex_dimension);
   if (outcome.self_intersections) add_self_intersections(report, *outcome.self_intersections);
   std::string took =
       seconds(outcome.read_seconds) + " to read, " + seconds(outcome.extract_seconds) + " to extract";

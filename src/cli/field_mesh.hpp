@@ -37,6 +37,7 @@ struct Outcome {
   int simplex_dimension = 0;
   std::uint64_t vertices = 0, simplices = 0, active_cells = 0;
   std::optional<Measure> measure;
+  std::optional<Contents> contents; // told of volumes, measured or not
   std::optional<SelfIntersections> self_intersections;
   std::string path; // of its file; empty: it was not written
   double read_seconds = 0, extract_seconds = 0, write_seconds = 0;

@@ -17,8 +17,6 @@ struct Interval : FieldMeshOptions {
   std::string range, level_axis = "last";
 };
 
-constexpr int highest_interval_dimension = 3;
-
 // "a:b", "a:b:n" or "a,b,..."
 std::vector<double> parse_levels(const std::string& range) {
   if (range.find(':') == std::string::npos) return parse_numbers("--range", range);
@@ -43,6 +41,12 @@ IntervalOptions interval_options(const Interval& options) {
   return result;
 }
 
+Contents contents_of(const Mesh& mesh, const Outcome& outcome, bool quiet) {
+  if (outcome.measure) return *outcome.measure;
+  const ProgressBar bar("measure", quiet);
+  return take(measure_contents(mesh));
+}
+
 std::string report_of(const Outcome& outcome, const Interval& options, const std::vector<double>& levels,
                       const FieldInfo& info) {
   Report report;
@@ -57,10 +61,10 @@ std::string report_of(const Outcome& outcome, const Interval& options, const std
 int run(const Interval& options) {
   const std::vector<double> levels = parse_levels(options.range);
   IntervalOptions filling = interval_options(options); // wrong ones are told before anything is read
-  const auto [field, read_seconds] = load_field(options, lowest_dimension, highest_interval_dimension, 0);
+  const auto [field, read_seconds] = load_field(options, lowest_dimension, highest_dimension, 0);
 
   const Stopwatch extracting;
-  const Mesh mesh = make_mesh<highest_interval_dimension>(
+  const Mesh mesh = make_mesh<highest_dimension>(
       "interval", field, options.printing.quiet, [&](const auto& view, const Progress& progress) {
         filling.progress = progress;
         return interval(view, std::span<const double>(levels), filling);
@@ -72,6 +76,7 @@ int run(const Interval& options) {
   Outcome outcome = finish(mesh, options, field.info, options.output.path, files);
   outcome.read_seconds = read_seconds;
   outcome.extract_seconds = extract_seconds;
+  outcome.contents = contents_of(mesh, outcome, options.printing.quiet);
   take(files.commit());
   if (options.printing.json)
     print_json(json_of(outcome, options, field.info,
@@ -109,19 +114,27 @@ Command interval_command(CLI::App& program) {
       *app,
       {{"interval INPUT... --range A:B [options]"},
        {"Fills the volume where the field lies between A and B: with tetrahedra in a 3D field, with "
-        "triangles in "
-        "2D. With more levels the volumes between them are one mesh, joined at the isosurface of each level. "
+        "triangles in 2D; in a 4D field, through time, with 4-simplices, which 'hyperiso slice' cuts at any "
+        "time into the tetrahedra of that moment. With more levels the volumes between them are one mesh, "
+        "joined at the isosurface of each level. "
         "Every vertex has point data: level, the number of its level, and isovalue; ParaView's Contour of "
         "isovalue slides through the range.",
-        "With --method hull a few tetrahedra may fold over: project with the wrong sign. They are counted as "
-        "inverted by --measure; on smooth fields there are hardly any. Where simplices are integrated over "
+        "No program draws 4-simplices: as .vtu they are cells of five unconnected points, x, y, z with the "
+        "fourth "
+        "coordinate as point data t, as 4D surfaces are; ParaView shows them as points.",
+        "With --method hull a few simplices may fold over: project with the wrong sign. They are counted as "
+        "inverted; on smooth fields there are hardly any. Where simplices are integrated over "
         "and "
         "the sum must be exact, use --method simplicial, which never folds and takes about five times as "
         "many."},
        {{"where there is a tenth to nine tenths of water, at one step of a dam break",
          "hyperiso interval examples/data/alpha_water_24x24x24x41.nrrd --steps 20:21 --range 0.1:0.9 "
          "--measure -o "
-         "spray.vtu"}}});
+         "spray.vtu"},
+        {"the same at three steps and all times between them, and one of those",
+         "hyperiso interval examples/data/alpha_water_24x24x24x41.nrrd --steps 20:23 --range 0.1:0.9 -o "
+         "sprays.vtu"},
+        {"", "hyperiso slice sprays.vtu --time 0.51 --measure -o spray_0.51.vtu"}}});
   return {app, [options] { return run(*options); }};
 }
 

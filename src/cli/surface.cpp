@@ -28,7 +28,9 @@ std::string name_of_axis(const std::vector<Axis>& axes, std::size_t axis) {
 }
 
 std::vector<Axis> axes_of(const Mesh& mesh) {
-  if (!mesh.grid_axes.empty()) return mesh.grid_axes;
+  const auto dimension = static_cast<std::ptrdiff_t>(mesh.dimension);
+  if (std::ssize(mesh.grid_axes) >= dimension) // that of levels follows
+    return {mesh.grid_axes.begin(), mesh.grid_axes.begin() + dimension};
   std::vector<Axis> axes(static_cast<std::size_t>(mesh.dimension));
   constexpr const char* names[] = {"x", "y", "z", "t"};
   for (std::size_t axis = 0; axis < std::min<std::size_t>(axes.size(), 4); ++axis)
@@ -54,7 +56,7 @@ bool is_mesh_file(const std::string& path) {
 }
 
 const char* simplex_noun(int k) {
-  constexpr const char* nouns[] = {"points", "segments", "triangles", "tetrahedra", "pentatopes"};
+  constexpr const char* nouns[] = {"points", "segments", "triangles", "tetrahedra", "4-simplices"};
   return k >= 0 && k <= 4 ? nouns[k] : "simplices";
 }
 
@@ -85,14 +87,17 @@ void add_measure(Report& report, const Measure& measure, int simplex_dimension) 
                                         : fmt::format("{} {}", grouped(measure.boundary_facets),
                                                       simplex_noun(simplex_dimension - 1)));
   report.add("bad facets", grouped(measure.bad_facets));
-  report.add(content_noun(simplex_dimension), fmt::format("{:.10g}", measure.content));
-  if (measure.vector_area.empty())
-    report.add("inverted",
-               fmt::format("{} {}", grouped(measure.inverted_simplices), simplex_noun(simplex_dimension)));
+  add_contents(report, measure, simplex_dimension);
+}
+
+void add_contents(Report& report, const Contents& contents, int simplex_dimension) {
+  const char* simplices = simplex_noun(simplex_dimension);
+  report.add(content_noun(simplex_dimension), fmt::format("{:.10g}", contents.content));
+  if (contents.vector_area.empty())
+    report.add("inverted", fmt::format("{} {}", grouped(contents.inverted_simplices), simplices));
   else
-    report.add("vector area", fmt::format("{:.6g}", fmt::join(measure.vector_area, ", ")));
-  report.add("zero content",
-             fmt::format("{} {}", grouped(measure.zero_content_simplices), simplex_noun(simplex_dimension)));
+    report.add("vector area", fmt::format("{:.6g}", fmt::join(contents.vector_area, ", ")));
+  report.add("zero content", fmt::format("{} {}", grouped(contents.zero_content_simplices), simplices));
 }
 
 void add_self_intersections_option(CLI::App& app, bool& option) {

@@ -39,6 +39,7 @@ Json json_of(const SelfIntersections& found);
 void add_self_intersections(Report& report, const SelfIntersections& found);
 
 void add_measure(Report& report, const Measure& measure, int simplex_dimension);
+void add_contents(Report& report, const Contents& contents, int simplex_dimension);
 
 // The field without its axes of one sample, as far as two are left: one step of a volume is a volume. Fails
 // if an axis of one sample remains: no surface can exist.

@@ -102,5 +102,6 @@ Result<VolumeMesh<D>> interval(const FieldView<const T, D>& field, std::span<con
                                           const IntervalOptions&);
 HYPERISO_FOR_EACH_SAMPLE_TYPE(HYPERISO_INSTANTIATE_INTERVAL, 2)
 HYPERISO_FOR_EACH_SAMPLE_TYPE(HYPERISO_INSTANTIATE_INTERVAL, 3)
+HYPERISO_FOR_EACH_SAMPLE_TYPE(HYPERISO_INSTANTIATE_INTERVAL, 4)
 
 } // namespace hyperiso

@@ -52,6 +52,8 @@ bool are_edges_of(const std::vector<Axis>& axes, const std::vector<GridEdge>& ed
     return are_edges_of<3>(axes, edges);
   case 4:
     return are_edges_of<4>(axes, edges);
+  case 5: // of a volume in R^4 and its levels
+    return are_edges_of<5>(axes, edges);
   default:
     return false;
   }
@@ -177,7 +179,7 @@ class Reader {
   // For a mesh without simplices: as its writer noted it down, else a surface.
   int noted_simplex_dimension() {
     const std::uint64_t noted = number_named(vtk_names::simplex_dimension);
-    return noted >= 1 && noted <= 3 ? static_cast<int>(noted) : 2;
+    return noted >= 1 && noted <= vtk_names::largest_simplex ? static_cast<int>(noted) : 2;
   }
 
   Cells unstructured(pugi::xml_node piece) {
@@ -185,10 +187,12 @@ class Reader {
     const auto types = values_named<std::uint8_t>(cells.arrays, "types");
     if (types.size() != cells.count)
       fail(xml_.malformed(text("has ", types.size(), " cell types for ", cells.count, " cells")));
-    for (int K = 1; K <= 3; ++K)
+    for (int K = 1; K <= vtk_names::largest_simplex; ++K) {
+      if (K == 4 && cells.simplex_dimension != 4) continue; // another program's points
       if (!types.empty() &&
           std::count(types.begin(), types.end(), vtk_names::cell_type(K)) == std::ssize(types))
         return {K, cells.count, cells.arrays};
+    }
     if (!types.empty())
       fail(xml_.unsupported(
           "holds other cells than segments only, triangles only or tetrahedra only (VTK's cell "
@@ -291,7 +295,8 @@ class Reader {
         number_named(vtk_names::simplex_dimension) == static_cast<std::uint64_t>(mesh.simplex_dimension);
     if (!unchanged) return;
     mesh.active_cells = number_named(vtk_names::active_cells);
-    std::vector<Axis> axes = read_axes(static_cast<std::size_t>(mesh.dimension));
+    const bool volume = mesh.simplex_dimension == mesh.dimension; // its grid has an axis of levels besides
+    std::vector<Axis> axes = read_axes(static_cast<std::size_t>(mesh.dimension) + (volume ? 1 : 0));
     const auto edges = values_named<GridEdge>(point_data, vtk_names::grid_edge);
     if (axes.empty() || edges.size() != mesh.vertex_count() || !are_edges_of(axes, edges)) return;
     mesh.grid_axes = std::move(axes);

@@ -24,7 +24,9 @@ inline std::string grid_coordinates(std::size_t axis) { // of the axes that have
   return "grid_coordinates_" + std::to_string(axis);
 }
 
-// VTK's number for segments, triangles and tetrahedra.
-constexpr int cell_type(int K) { return K == 1 ? 3 : K == 2 ? 5 : 10; }
+// VTK's number for segments, triangles and tetrahedra. It has none for 4-simplices: they are its "poly
+// vertex", a cell of any number of points that are not joined.
+constexpr int largest_simplex = 4;
+constexpr int cell_type(int K) { return K == 1 ? 3 : K == 2 ? 5 : K == 3 ? 10 : 2; }
 
 } // namespace hyperiso::vtk_names

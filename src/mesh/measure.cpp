@@ -132,18 +132,18 @@ class ContentSum {
         corners_(static_cast<std::size_t>(mesh.simplex_dimension) + 1), edges_((corners_ - 1) * dimension_) {}
 
   template <class Real, class Index>
-  void add(std::span<const Real> positions, std::span<const Index> simplex, Measure& measure) {
+  void add(std::span<const Real> positions, std::span<const Index> simplex, Contents& sums) {
     const std::size_t start = simplex[0] * dimension_;
     for (std::size_t corner = 1; corner < corners_; ++corner)
       for (std::size_t k = 0; k < dimension_; ++k)
         edges_[(corner - 1) * dimension_ + k] =
             static_cast<double>(positions[simplex[corner] * dimension_ + k]) -
             static_cast<double>(positions[start + k]);
-    const double signed_content = corners_ == dimension_ + 1 ? volume() : area(measure.vector_area);
+    const double signed_content = corners_ == dimension_ + 1 ? volume() : area(sums.vector_area);
     const double content = std::abs(signed_content);
-    measure.content += content;
-    if (signed_content < 0) ++measure.inverted_simplices;
-    if (content == 0) ++measure.zero_content_simplices;
+    sums.content += content;
+    if (signed_content < 0) ++sums.inverted_simplices;
+    if (content == 0) ++sums.zero_content_simplices;
   }
 
  private:
@@ -206,17 +206,12 @@ void measure_mesh(const Mesh& mesh, Measure& measure) {
   }
 }
 
-} // namespace
-
-Result<Measure> measure(const Mesh& mesh) {
+Status check(const Mesh& mesh) {
   if (mesh.dimension < 2 || mesh.dimension > max_dimension || mesh.simplex_dimension < 1 ||
       mesh.simplex_dimension < mesh.dimension - 1 || mesh.simplex_dimension > mesh.dimension)
     return Error{Code::invalid_argument,
                  text("cannot measure ", mesh.simplex_dimension, "-simplices in ", mesh.dimension,
                       " dimensions; surfaces and volumes in 2 to ", max_dimension, " can")};
-  Measure measure;
-  if (mesh.simplex_dimension == mesh.dimension - 1)
-    measure.vector_area.assign(static_cast<std::size_t>(mesh.dimension), 0.0);
   const std::size_t vertices = mesh.vertex_count();
   const bool in_range = mesh.simplices.visit([&](auto simplices) {
     return std::ranges::all_of(simplices, [&](auto vertex) { return vertex < vertices; });
@@ -224,12 +219,45 @@ Result<Measure> measure(const Mesh& mesh) {
   if (!in_range)
     return Error{Code::invalid_argument,
                  text("a simplex names a vertex beyond the ", vertices, " of the mesh")};
+  return {};
+}
+
+std::vector<double> no_area(const Mesh& mesh) {
+  return std::vector<double>(
+      mesh.simplex_dimension < mesh.dimension ? static_cast<std::size_t>(mesh.dimension) : 0);
+}
+
+} // namespace
+
+Result<Measure> measure(const Mesh& mesh) {
+  if (const Status valid = check(mesh); !valid) return valid.error();
   try {
+    Measure measure;
+    measure.vector_area = no_area(mesh);
     measure_mesh(mesh, measure);
     return measure;
   } catch (const std::bad_alloc&) {
     return Error{Code::out_of_memory,
                  text("not enough memory to measure ", mesh.simplex_count(), " simplices")};
+  }
+}
+
+Result<Contents> measure_contents(const Mesh& mesh) {
+  if (const Status valid = check(mesh); !valid) return valid.error();
+  try {
+    Contents sums;
+    sums.vector_area = no_area(mesh);
+    ContentSum content(mesh);
+    const auto corners = static_cast<std::size_t>(mesh.simplex_dimension) + 1;
+    mesh.positions.visit([&](auto positions) {
+      mesh.simplices.visit([&](auto simplices) {
+        for (std::size_t start = 0; start < simplices.size(); start += corners)
+          content.add(positions, simplices.subspan(start, corners), sums);
+      });
+    });
+    return sums;
+  } catch (const std::bad_alloc&) {
+    return Error{Code::out_of_memory, "not enough memory to measure a simplex"};
   }
 }
 

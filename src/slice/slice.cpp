@@ -15,11 +15,11 @@
 namespace hyperiso {
 namespace {
 
-// The layer of samples of the grid that a surface came from, if the plane holds one.
-template <int D>
-std::optional<Layer> layer_in(const Mesh& mesh, const Hyperplane<D>& plane) {
+// The layer of samples of the grid that a mesh came from, if the plane holds one.
+template <int D, int K>
+std::optional<Layer> layer_in(const SimplexMesh<D, K>& mesh, const Hyperplane<D>& plane) {
   const std::optional<int> across = axis_across(plane);
-  if (!across || mesh.edges.empty() || mesh.simplex_dimension != D - 1) return std::nullopt;
+  if (!across || mesh.edges.empty() || mesh.grid_axes.size() != K + 1) return std::nullopt;
   const auto around =
       samples_around(mesh.grid_axes[static_cast<std::size_t>(*across)], plane.offset / plane.normal[*across]);
   if (!around || around->end - around->begin != 1) return std::nullopt;
@@ -32,9 +32,8 @@ Result<SimplexMesh<D - 1, K - 1>> slice_some(const SimplexMesh<D, K>& mesh, cons
                                              const ForEachSimplex& for_each_simplex) {
   if (const Status valid = check_plane(plane); !valid) return valid.error();
   try {
-    if constexpr (K == D - 1)
-      if (const auto layer = layer_in(mesh, plane))
-        return Trace<D>(mesh, *layer, for_each_simplex).mesh(options);
+    if (const auto layer = layer_in(mesh, plane))
+      return Trace<D, K>(mesh, *layer, for_each_simplex).mesh(options);
     return cut_inside(mesh, plane, options, for_each_simplex);
   } catch (const std::bad_alloc&) {
     return Error{Code::out_of_memory,
