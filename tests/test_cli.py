@@ -647,7 +647,7 @@ class View(Case):
         self.assertEqual(page["attributes"], [{"name": "track", "kind": "label", "labels": [0, 1]}])
 
     def test_a_page_that_would_be_too_large_has_fewer_samples_and_says_so(self):
-        run = Run("view", WATER, "--iso", "0.5", "--max-size", "1M", "-o", "a.html")
+        run = Run("view", WATER, "--iso", "0.5", "--max-size", "1M", "--payload", "mesh", "-o", "a.html")
         self.assertEqual(run.code, 0)
         self.assertRegex(run.err, r"\Ahyperiso: warning: the page would have been larger than 1 MiB: .*second sample.*\n\Z")
         page = self.metadata("a.html")
@@ -656,6 +656,37 @@ class View(Case):
         self.assertLess((self.folder / "a.html").stat().st_size, 2 ** 20)
         self.ok("extract", WATER, "--iso", "0.5", "-o", "water.vtu")
         self.assert_refused(2, "view", "water.vtu", "--max-size", "1M", "-o", "b.html", words=["220424", "1 MiB"])
+
+    def has_field_pages(self):
+        return "no extraction" not in Run("view", WATER, "--iso", "0.5", "--payload", "band", "-o", "probe.html").err
+
+    def test_a_page_of_samples_shows_the_same_surface(self):
+        if not self.has_field_pages():
+            self.skipTest("built without the extraction for pages")
+        sizes = {}
+        for payload in ("mesh", "band", "field"):
+            run = self.ok("view", WATER, "--iso", "0.5", "--payload", payload, "-o", "a.html", "--json").json()
+            page = self.metadata("a.html")
+            self.assertEqual((run["payload"], run["simplices"], page["simplices"], page["vertices"]),
+                             (payload, 220424, 220424, 41685))
+            self.assertEqual("samples" in page, payload != "mesh")
+            sizes[payload] = run["bytes"]
+        self.assertLess(sizes["band"], sizes["field"])
+        self.assertLess(sizes["field"], sizes["mesh"])
+
+    def test_the_band_is_taken_before_samples_are_left_out(self):
+        if not self.has_field_pages():
+            self.skipTest("built without the extraction for pages")
+        run = self.ok("view", WATER, "--iso", "0.5", "--max-size", "1.2M", "-o", "a.html", "--json")
+        self.assertEqual((run.json()["payload"], run.json()["notes"], run.json()["simplices"]), ("band", [], 220424))
+        run = Run("view", WATER, "--iso", "0.5", "--max-size", "890k", "-o", "a.html", "--json")
+        self.assertEqual(run.code, 0)
+        self.assertRegex(run.err, r"\Ahyperiso: warning: the page would have been larger than 8.*second sample.*\n\Z")
+        self.assertEqual(len(self.metadata("a.html")["notes"]), 1)
+        self.assertEqual(self.metadata("a.html")["samples"]["axes"][0]["count"], 12)
+        self.assert_refused(2, "view", WATER, "--iso", "0.5", "--payload", "field", "--max-size", "100k", "-o", "b.html",
+                            words=["would be larger than", "higher limit"])
+        self.assertFalse((self.folder / "b.html").exists())
 
     def test_space_alone_and_two_axes_of_space_with_time(self):
         for dims in ("12,12,12", "12,12,12,5"):
@@ -669,11 +700,15 @@ class View(Case):
         self.assert_refused(2, "view", field, "--iso", "0.5", words=["output"])
         self.assert_refused(2, "view", field, "--iso", "0.5,0.6", "-o", "a.html", words=["one isovalue"])
         self.assert_refused(2, "view", field, "--iso", "0.5", "--max-size", "many", "-o", "a.html", words=["--max-size"])
+        self.assert_refused(2, "view", field, "--iso", "0.5", "--payload", "net", "-o", "a.html", words=["mesh, band and field"])
+        self.assert_refused(2, "view", field, "--iso", "0.5", "--payload", "band", "--method", "barycentric", "-o", "a.html",
+                            words=["barycentric"])
         self.sample("ball", "4,4", "two.nrrd")
         self.assert_refused(2, "view", "two.nrrd", "--iso", "0.5", "-o", "a.html", words=["3 to 4"])
         self.ok("extract", field, "--iso", "0.5", "-o", "mesh.vtu")
         self.assert_refused(2, "view", "mesh.vtu", "--iso", "0.5", "-o", "a.html", words=["--iso"])
         self.assert_refused(2, "view", "mesh.vtu", "--track", "-o", "a.html", words=["--track"])
+        self.assert_refused(2, "view", "mesh.vtu", "--payload", "field", "-o", "a.html", words=["no samples"])
         self.assert_refused(1, "view", field, "--iso", "0.5", "-o", "no/such/folder/a.html", words=["folder"])
 
 class Slices(Case):
@@ -799,6 +834,22 @@ class World(Case):
             for key in ("content", "boundary_facets", "euler_characteristic"):
                 self.assertAlmostEqual(cuts[0]["measure"][key], cuts[1]["measure"][key], places=6, msg=plane)
         self.assert_refused(2, "slice", "turned.nrrd", "--iso", "0", "--time", "0.5", words=["7", "8"])
+
+    @unittest.skipUnless(HAS_VIEW, "built without the viewer")
+    def test_events_of_a_page_are_there_too(self):
+        samples = []
+        for t, z, y, x in itertools.product(range(6), range(9), range(9), range(17)):  # two balls meet at x = 8
+            samples.append(max(3 - math.dist((x, y, z), (3 + t, 4, 4)), 3 - math.dist((x, y, z), (13 - t, 4, 4))))
+        header = ("NRRD0004\ntype: float\ndimension: 4\nsizes: 17 9 9 6\nspace dimension: 3\n"
+                  "space directions: (0,2,0) (-2,0,0) (0,0,2) none\nspace origin: (100,200,300)\n"
+                  "kinds: domain domain domain time\nspacings: nan nan nan 0.5\nendian: little\nencoding: raw\n\n")
+        (self.folder / "meet.nrrd").write_bytes(header.encode() + struct.pack(f"<{len(samples)}f", *samples))
+        self.ok("view", "meet.nrrd", "--iso", "0.5", "--track", "-o", "meet.html")
+        text = (self.folder / "meet.html").read_text()
+        page = json.loads(re.search(r'id="hyperiso-metadata">(.*?)</script>', text)[1])
+        merge, = [event for event in page["tracking"]["events"] if event["type"] == "merge"]
+        for found, expected in zip(merge["position"], (100 - 2 * 4, 200 + 2 * 8, 300 + 2 * 4)):
+            self.assertAlmostEqual(found, expected, delta=1.5)
 
     def surface_points(self, path):
         lines = (self.folder / path).read_text().split("\n")

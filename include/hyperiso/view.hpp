@@ -2,8 +2,7 @@
 /// \file
 /// One HTML file that shows a surface: plays it through time, cuts it by any hyperplane.
 
-#include "hyperiso/mesh.hpp"
-#include "hyperiso/progress.hpp"
+#include "hyperiso/extract.hpp"
 #include "hyperiso/track.hpp"
 
 #include <cstdint>
@@ -28,12 +27,17 @@ struct PageOptions {
   /// Tracks and events to show under the scene, and to colour by; of the field that the mesh is the surface
   /// of.
   const TrackingGraph* tracking = nullptr;
+  /// Grid to world coordinates, where the mesh has been moved so: places of events, which are in grid
+  /// coordinates, are moved along. `write_field_page` takes that of its field.
+  std::optional<Affine> world;
   std::uint64_t size_limit = UINT64_MAX; ///< bytes that the page may have
   Progress progress = {};
 };
 
 /// Whether this library was built with the viewer; `write_page` works only then.
 bool has_viewer();
+/// Whether it was also built with the extraction core for pages; `write_field_page` works only then.
+bool has_field_pages();
 
 /// Writes one self-contained HTML file: the viewer and the mesh, no reference to anything outside. It opens
 /// in any browser with WebGL 2 (all current ones), also from a disk without a network.
@@ -49,5 +53,44 @@ bool has_viewer();
 /// pass `size_limit`; out_of_memory where the mesh passes what graphics cards hold (16.7 million
 /// vertices, 33.5 million simplices); file_unwritable; cancelled.
 Status write_page(const Mesh& mesh, const PageOptions& options, const std::filesystem::path& path);
+
+/// What a page keeps of the samples of a field.
+enum class PageSamples {
+  band, ///< those that the surface at one isovalue needs: the smallest page, by far
+  all,  ///< every one: the page has a slider for the isovalue
+};
+
+struct FieldPageOptions : PageOptions {
+  PageSamples samples = PageSamples::all;
+  Method method = Method::hull; ///< not barycentric
+  Inside inside = Inside::above;
+  int threads = 0;
+  std::uint64_t memory_limit = UINT64_MAX; ///< bytes the surface may take while the page is written
+};
+
+/// What the page shows at first.
+struct PageSurface {
+  std::uint64_t vertices, simplices;
+};
+
+/// Writes a page that holds samples of the field and extracts its surface itself when it is opened, by this
+/// library's code compiled to WebAssembly. `isovalue`, `axes`, `has_time`, `field_name` and `world` of the
+/// options are taken from the arguments.
+///
+/// Samples are kept with up to 16 bits. Integers of 8 and 16 bits are exact. Others are rounded to 65533 even
+/// steps over their range (65530 if there are NaN or infinities, which are kept), of a band over the range
+/// of the samples kept, and never across the isovalue. So the page shows the surface of `write_page` simplex
+/// for simplex, to the bit for exact samples; others may move a vertex by what half a step of its two samples
+/// moves it. At other isovalues than the first, it is the surface of the rounded field.
+///
+/// `tracking`: of the same field at the same isovalue; the page says so where another is chosen.
+///
+/// Dimensions: 3 and 4. Bytes in the file, beside 0.8 MB for the viewer: for each tetrahedron of the surface
+/// 0.2 to 0.3 of a band, for each sample up to 2.7 of all, less for smooth fields.
+///
+/// Errors: those of `write_page`; invalid_isovalue; invalid_argument for Method::barycentric;
+/// unsupported_dimension.
+Result<PageSurface> write_field_page(const Field& field, double isovalue, const FieldPageOptions& options,
+                                     const std::filesystem::path& path);
 
 } // namespace hyperiso

@@ -30,7 +30,7 @@ struct View {
   FieldOptions input;
   std::string iso;
   SurfaceOptions surface;
-  std::string path, title, colour_by, size = default_size;
+  std::string path, title, colour_by, payload, size = default_size;
   bool track = false, open = false;
   PrintOptions printing;
   MachineOptions machine;
@@ -38,7 +38,10 @@ struct View {
 
 // What the page shows.
 struct Content {
-  std::unique_ptr<Mesh> mesh;
+  std::unique_ptr<Mesh> mesh;         // of a page that holds the surface
+  Field field;                        // of a page that holds samples
+  std::optional<PageSamples> samples; // what of them
+  PageSurface surface{};
   PageOptions page;
   TrackingGraph tracking;
   double read_seconds = 0, extract_seconds = 0;
@@ -80,23 +83,31 @@ std::unique_ptr<Mesh> surface_of(const View& options, const Field& field, double
   });
 }
 
-// Takes fewer samples until the page should fit; says so in the page and to the caller.
+std::string fewer_samples(std::uint64_t size, int times) {
+  return fmt::format("page would have been larger than {}: it shows every {} sample along each axis of space",
+                     byte_size(size), times == 2 ? "second" : fmt::format("{}th", times));
+}
+
+// Says in the page and to the caller what was left out.
+void tell(const View& options, const std::string& what, Content& content) {
+  content.page.notes.push_back("The " + what + ".");
+  if (!options.printing.quiet) print_warning("the " + what);
+}
+
+double expected_bytes(const Content& content) {
+  return bytes_of_viewer + bytes_per_simplex * static_cast<double>(content.mesh->simplex_count());
+}
+
+// Takes fewer samples until the page of the surface should fit.
 void fit(const View& options, std::uint64_t size, double isovalue, Field& field, Content& content) {
   int times = 1;
   for (int halving = 0; halving < most_halvings; ++halving) {
-    const double expected =
-        bytes_of_viewer + bytes_per_simplex * static_cast<double>(content.mesh->simplex_count());
-    if (expected <= static_cast<double>(size)) break;
+    if (expected_bytes(content) <= static_cast<double>(size)) break;
     field = halved(std::move(field));
     times *= 2;
     content.mesh = surface_of(options, field, isovalue);
   }
-  if (times == 1) return;
-  const std::string what =
-      fmt::format("page would have been larger than {}: it shows every {} sample along each axis of space",
-                  byte_size(size), times == 2 ? "second" : fmt::format("{}th", times));
-  content.page.notes.push_back("The " + what + ".");
-  if (!options.printing.quiet) print_warning("the " + what);
+  if (times > 1) tell(options, fewer_samples(size, times), content);
 }
 
 void track_components(const View& options, const Field& field, double isovalue, Content& content) {
@@ -121,18 +132,33 @@ void read_field(const View& options, std::uint64_t size, Content& content) {
   content.read_seconds = reading.seconds();
   check_axes(field.info);
 
+  content.page.isovalue = isovalues[0];
   const Stopwatch extracting;
-  content.mesh = surface_of(options, field, isovalues[0]);
-  fit(options, size, isovalues[0], field, content);
-  if (content.mesh->simplex_count() == 0 && !options.printing.quiet)
+  if (options.payload == "band" || options.payload == "field") {
+    content.samples = options.payload == "band" ? PageSamples::band : PageSamples::all;
+  } else {
+    content.mesh = surface_of(options, field, isovalues[0]);
+    const bool too_large = expected_bytes(content) > static_cast<double>(size);
+    if (too_large && options.payload.empty() && has_field_pages() &&
+        options.surface.method != "barycentric") {
+      content.samples = PageSamples::band;
+      content.mesh.reset();
+    }
+  }
+  if (content.mesh) fit(options, size, isovalues[0], field, content);
+  if (content.mesh && content.mesh->simplex_count() == 0 && !options.printing.quiet)
     print_warning(why_empty(field, isovalues[0]));
   if (options.track) track_components(options, field, isovalues[0], content);
   content.extract_seconds = extracting.seconds();
+  if (content.samples) {
+    content.field = std::move(field);
+    return;
+  }
 
   content.page.axes = field.info.axes;
   content.page.has_time = field.info.has_time;
   content.page.field_name = field.info.name;
-  content.page.isovalue = isovalues[0];
+  content.page.world = field.info.world;
   if (!field.info.world) return;
   transform(*content.mesh, *field.info.world);
   for (Axis& axis : content.page.axes) axis.count = 0; // the mesh is no longer on the grid
@@ -147,6 +173,45 @@ void read_surface(const View& options, Content& content) {
   content.read_seconds = reading.seconds();
   content.page.axes = axes_of(*content.mesh);
   content.page.has_time = content.mesh->dimension == 4 || content.page.axes.back().name == "t";
+}
+
+// Writes the page of a field, of fewer samples until it fits.
+void write_samples(const View& options, std::uint64_t size, Content& content) {
+  const ExtractOptions extraction = options.surface.extract_options(options.machine);
+  FieldPageOptions page;
+  page.samples = *content.samples;
+  page.method = extraction.method;
+  page.inside = extraction.inside;
+  page.threads = extraction.threads;
+  page.memory_limit = extraction.memory_limit;
+  for (int times = 1;; times *= 2) {
+    if (times > 1) {
+      content.field = halved(std::move(content.field));
+      content.page.notes = {"The " + fewer_samples(size, times) + "."};
+    }
+    static_cast<PageOptions&>(page) = content.page;
+    ProgressBar bar("write", options.printing.quiet);
+    page.progress = bar.callback();
+    Result<PageSurface> written = write_field_page(content.field, *content.page.isovalue, page, options.path);
+    if (!written && written.error().code == Code::invalid_argument && times < 1 << most_halvings) continue;
+    content.surface = take(std::move(written));
+    if (times > 1 && !options.printing.quiet) print_warning("the " + fewer_samples(size, times));
+    if (content.surface.simplices == 0 && !options.printing.quiet)
+      print_warning(why_empty(content.field, *content.page.isovalue));
+    return;
+  }
+}
+
+void write_surface(const View& options, Content& content) {
+  ProgressBar bar("write", options.printing.quiet);
+  content.page.progress = bar.callback();
+  take(write_page(*content.mesh, content.page, options.path));
+  content.surface = {content.mesh->vertex_count(), content.mesh->simplex_count()};
+}
+
+const char* payload_of(const Content& content) {
+  if (!content.samples) return "mesh";
+  return *content.samples == PageSamples::band ? "band" : "field";
 }
 
 // Starts the system's program for files of this kind and does not wait for it.
@@ -165,12 +230,13 @@ void open_page(const std::string& path) {
 
 void print_outcome(const View& options, const Content& content, double write_seconds) {
   const std::uint64_t bytes = std::filesystem::file_size(options.path);
-  const Mesh& mesh = *content.mesh;
+  const int dimension = content.mesh ? content.mesh->dimension : content.field.info.dimension();
   if (options.printing.json) {
     Json object{
-        {"dimension", mesh.dimension},
-        {"vertices", mesh.vertex_count()},
-        {"simplices", mesh.simplex_count()},
+        {"dimension", dimension},
+        {"vertices", content.surface.vertices},
+        {"simplices", content.surface.simplices},
+        {"payload", payload_of(content)},
         {"bytes", bytes},
         {"notes", content.page.notes},
         {"seconds",
@@ -181,21 +247,39 @@ void print_outcome(const View& options, const Content& content, double write_sec
     return print_json(object);
   }
   Report report;
-  report.add("vertices", grouped(mesh.vertex_count()));
-  report.add(simplex_noun(mesh.simplex_dimension), grouped(mesh.simplex_count()));
+  report.add("vertices", grouped(content.surface.vertices));
+  report.add(simplex_noun(dimension - 1), grouped(content.surface.simplices));
   if (content.page.tracking)
     report.add("tracks",
                fmt::format("{}, {} events", content.tracking.tracks.size(), content.tracking.events.size()));
   report.add("took", fmt::format("{} to read, {} to extract, {} to write", seconds(content.read_seconds),
                                  seconds(content.extract_seconds), seconds(write_seconds)));
-  report.add("wrote", fmt::format("{}, {}; open it in a browser", options.path, byte_size(bytes)));
+  report.add("wrote", fmt::format("{}, {} with the {}; open it in a browser", options.path, byte_size(bytes),
+                                  !content.samples                        ? "surface"
+                                  : *content.samples == PageSamples::band ? "samples near the surface"
+                                                                          : "field"));
   print(report.text());
+}
+
+void check_payload(const View& options, bool from_mesh) {
+  if (options.payload != "mesh" && options.payload != "band" && options.payload != "field")
+    fail_usage(text("--payload: '", options.payload, "' is none of mesh, band and field"));
+  if (options.payload == "mesh") return;
+  if (from_mesh) fail_usage(text("--payload ", options.payload, ": the input is a mesh, it has no samples"));
+  if (options.surface.method == "barycentric")
+    fail_usage(text("--payload ", options.payload, ": a page does not extract by --method barycentric"));
+  if (!has_field_pages())
+    fail_usage(
+        text("--payload ", options.payload,
+             ": this build of hyperiso has no extraction for pages; build it where CMake finds Clang's "
+             "WebAssembly (docs/dependencies.md), or take --payload mesh"));
 }
 
 int run(const View& options) {
   const std::uint64_t size = parse_bytes("--max-size", options.size);
   const bool from_mesh = options.input.paths.size() == 1 && is_mesh_file(options.input.paths[0]);
   if (!from_mesh && options.iso.empty()) fail_usage("--iso is required to view a field");
+  if (!options.payload.empty()) check_payload(options, from_mesh);
   Content content;
   if (from_mesh)
     read_surface(options, content);
@@ -205,11 +289,10 @@ int run(const View& options) {
   content.page.colour_by = options.colour_by;
   content.page.size_limit = size;
   const Stopwatch writing;
-  {
-    ProgressBar bar("write", options.printing.quiet);
-    content.page.progress = bar.callback();
-    take(write_page(*content.mesh, content.page, options.path));
-  }
+  if (content.samples)
+    write_samples(options, size, content);
+  else
+    write_surface(options, content);
   print_outcome(options, content, writing.seconds());
   if (options.open) open_page(options.path);
   return 0;
@@ -239,10 +322,19 @@ Command view_command(CLI::App& program) {
                 "also track the components through time, and show tracks and events under the picture")
       ->group("Output");
   app->add_option(
+         "--payload", options->payload,
+         "what the page holds: mesh (default: the surface), band (the samples near it, from which the "
+         "page extracts the same surface: the smallest) or field (all samples: the page has a slider "
+         "for the isovalue). Samples that are not integers of 8 or 16 bits are rounded to 16")
+      ->type_name("WHAT")
+      ->group("Output");
+  app->add_option(
          "--max-size", options->size,
          text("how large the page may be; default ", default_size,
-              ". Of a field that would give a larger one, every second sample (or fourth, ...) along "
-              "the axes of space is used, with a warning here and in the page"))
+              ". Of a field whose surface would take more, the band is taken; where that is too large as "
+              "well, "
+              "every second sample (or fourth, ...) along the axes of space, with a warning here and in the "
+              "page"))
       ->type_name("SIZE")
       ->group("Output");
   app->add_flag("--open", options->open, "open it in the browser")->group("Output");
@@ -255,12 +347,16 @@ Command view_command(CLI::App& program) {
         "time, continuously and exactly, cuts it by any hyperplane of space and time, colours it, reads "
         "points, "
         "saves pictures and slices. Surfaces of 3D and 4D fields.",
-        "A page takes about 5 bytes per tetrahedron."},
+        "A page takes about 5 bytes per tetrahedron, with --payload band 0.3, with --payload field 1 to 2 "
+        "per "
+        "sample."},
        {{"the water through time, coloured by how fast its surface moves",
          "hyperiso view examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 --colour-by speed -o "
          "water.html"},
         {"with what merges and parts on the time line",
-         "hyperiso view examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 --track -o tracked.html"}}});
+         "hyperiso view examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 --track -o tracked.html"},
+        {"with a slider for the isovalue", "hyperiso view examples/data/alpha_water_24x24x24x41.nrrd --iso "
+                                           "0.5 --payload field -o levels.html"}}});
   return {app, [options] { return run(*options); }};
 }
 

@@ -2,20 +2,31 @@
 
 #include <algorithm>
 #include <cstring>
+#if !defined(__wasm__)
 #include <sys/mman.h>
+#endif
 
 namespace hyperiso {
 namespace {
 
 constexpr std::size_t huge_page = std::size_t{2} << 20;
 
-// Large blocks come from mmap, aligned to huge pages and advised to use them; small ones from operator new.
-bool is_mapped(std::size_t capacity) { return capacity >= 2 * huge_page; }
-
 std::size_t rounded_up(std::size_t bytes, std::size_t unit) {
   if (bytes > SIZE_MAX - unit) throw std::bad_alloc();
   return (bytes + unit - 1) / unit * unit;
 }
+
+#if defined(__wasm__) // has no pages to map
+
+bool is_mapped(std::size_t) { return false; }
+void* map(std::size_t) { throw std::bad_alloc(); }
+void unmap(void*, std::size_t) {}
+bool move_pages(void*, void*, std::size_t) { return false; }
+
+#else
+
+// Large blocks come from mmap, aligned to huge pages and advised to use them; small ones from operator new.
+bool is_mapped(std::size_t capacity) { return capacity >= 2 * huge_page; }
 
 void* map(std::size_t capacity) {
   if (capacity > SIZE_MAX - huge_page) throw std::bad_alloc();
@@ -33,14 +44,7 @@ void* map(std::size_t capacity) {
   return data;
 }
 
-void* allocate(std::size_t capacity) {
-  return is_mapped(capacity) ? map(capacity) : ::operator new (capacity, std::align_val_t{64});
-}
-
-// How many bytes to ask for where `bytes` are needed.
-std::size_t capacity_for(std::size_t bytes) {
-  return is_mapped(bytes) ? rounded_up(bytes, huge_page) : rounded_up(bytes, 64);
-}
+void unmap(void* data, std::size_t capacity) { munmap(data, capacity); }
 
 // Pages of `from` become those of `to`, unread and uncopied; false if the system cannot do it.
 bool move_pages([[maybe_unused]] void* from, [[maybe_unused]] void* to, [[maybe_unused]] std::size_t bytes) {
@@ -51,9 +55,20 @@ bool move_pages([[maybe_unused]] void* from, [[maybe_unused]] void* to, [[maybe_
 #endif
 }
 
+#endif
+
+void* allocate(std::size_t capacity) {
+  return is_mapped(capacity) ? map(capacity) : ::operator new (capacity, std::align_val_t{64});
+}
+
+// How many bytes to ask for where `bytes` are needed.
+std::size_t capacity_for(std::size_t bytes) {
+  return is_mapped(bytes) ? rounded_up(bytes, huge_page) : rounded_up(bytes, 64);
+}
+
 void release(void* data, std::size_t capacity) {
   if (is_mapped(capacity))
-    munmap(data, capacity);
+    unmap(data, capacity);
   else
     ::operator delete (data, std::align_val_t{64});
 }

@@ -20,7 +20,7 @@ struct HalfSpace {
 
   std::int64_t height(const IntegerVector<D>& point) const { return dot(outward, point) - offset; }
   HalfSpace opposite() const { return {difference({}, outward), -offset}; }
-  friend auto operator<=>(const HalfSpace&, const HalfSpace&) = default;
+  friend std::strong_ordering operator<=>(const HalfSpace&, const HalfSpace&) = default;
 };
 
 // One of the half-spaces of the hyperplane through D points, the same whichever points give it: the one with

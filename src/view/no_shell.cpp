@@ -5,5 +5,6 @@
 namespace hyperiso {
 
 std::span<const unsigned char> compressed_shell() { return {}; }
+std::span<const unsigned char> compressed_core() { return {}; }
 
 } // namespace hyperiso

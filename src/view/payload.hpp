@@ -53,11 +53,18 @@ class Payload {
   };
   const std::vector<Block>& blocks() const { return blocks_; }
   std::size_t vertex_count() const { return used_vertices_.size(); } // those in a simplex
+  std::size_t simplex_count() const { return order_.size(); }
   const std::vector<Quantiser>& quantisers() const { return quantisers_; }
 
   // The bytes of a block, compressed (raw deflate).
   std::vector<unsigned char> encode(const Block& block,
                                     const std::vector<EncodedAttribute>& attributes) const;
+  // The bytes of the attributes alone, of all vertices.
+  std::vector<unsigned char> encode(const std::vector<EncodedAttribute>& attributes) const;
+
+  // All as a page's viewer holds it: of each vertex 4 levels, 0 for a fourth axis that is not there; of each
+  // simplex 4 vertices, of a triangle the last one twice.
+  void unpack(std::uint16_t* levels, std::uint32_t* simplices) const;
 
  private:
   void order_simplices(bool time_slabs);

@@ -9,4 +9,8 @@ namespace hyperiso {
 // are replaced: <!--hyperiso:title--> and, after everything else in its body, <!--hyperiso:data-->.
 std::span<const unsigned char> compressed_shell();
 
+// The extraction core as a WebAssembly module (wasm/module.cpp), as raw deflate makes it; empty if the
+// library was built without it.
+std::span<const unsigned char> compressed_core();
+
 } // namespace hyperiso

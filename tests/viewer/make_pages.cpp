@@ -1,8 +1,10 @@
 // Makes the pages that the viewer's tests open.
 //
 //   make_viewer_pages FOLDER          the pages of the tests
-//   make_viewer_pages FILE.html N     one page of a morphing torus, N samples along each axis of space
+//   make_viewer_pages FILE.html N     one page of a morphing torus, N samples along each axis of space; of
+//                                     samples if FILE ends in _band or _field
 
+#include "hyperiso/convert.hpp"
 #include "hyperiso/extract.hpp"
 #include "hyperiso/sample.hpp"
 #include "hyperiso/view.hpp"
@@ -72,11 +74,60 @@ void write(const Page& page, const std::filesystem::path& path) {
   std::exit(1);
 }
 
+// The blobs in whole numbers, which all kinds of pages keep as they are.
+Field exact_blobs() {
+  SampleOptions sample;
+  sample.dims = {24, 24, 24, 21};
+  Field field = take(make_sample("gaussians", sample));
+  field.info.name = "density";
+  for (Axis& axis : field.info.axes) axis.unit = axis.name == "t" ? "s" : "mm";
+  return take(convert(field, {.type = SampleType::u8, .rescale = ConvertOptions::Range{0, 1}})).field;
+}
+
+// Of one field, its tracks and a moving world: a page of each kind.
+void write_kinds(const Field& field, double isovalue, const std::string& name,
+                 const std::filesystem::path& folder) {
+  FieldSteps steps(field);
+  const TrackingGraph graph = take(track(steps, isovalue));
+  FieldPageOptions options;
+  options.title = name;
+  options.tracking = &graph;
+  for (const PageSamples samples : {PageSamples::band, PageSamples::all}) {
+    options.samples = samples;
+    take(write_field_page(field, isovalue, options,
+                          folder / (name + (samples == PageSamples::all ? "_field.html" : "_band.html"))));
+  }
+  Page page;
+  static_cast<PageOptions&>(options).title = name;
+  page.options = options;
+  page.options.axes = field.info.axes;
+  page.options.has_time = true;
+  page.options.field_name = field.info.name;
+  page.options.isovalue = isovalue;
+  visit_sample_type(field.info.type, [&](auto sample) {
+    page.mesh = std::make_unique<SimplexMesh<4>>(take(extract(field.view<decltype(sample), 4>(), isovalue)));
+  });
+  write(page, folder / (name + "_mesh.html"));
+}
+
 } // namespace
 
 int main(int count, char** arguments) {
   if (count == 3) {
     const std::int64_t samples = std::atoll(arguments[2]);
+    const std::string path = arguments[1];
+    if (path.find("_field") != std::string::npos || path.find("_band") != std::string::npos) {
+      SampleOptions sample;
+      sample.dims = {samples, samples, samples, samples * 5 / 8};
+      const Field field = take(make_sample("torus-morph", sample));
+      FieldPageOptions options;
+      options.title = "torus-morph";
+      options.samples = path.find("_band") != std::string::npos ? PageSamples::band : PageSamples::all;
+      const PageSurface surface =
+          take(write_field_page(field, sample_isovalue("torus-morph", sample), options, path));
+      std::cout << surface.simplices << '\n';
+      return 0;
+    }
     const Page page = sample_page<4>("torus-morph", {samples, samples, samples, samples * 5 / 8}, true);
     write(page, arguments[1]);
     std::cout << page.mesh->simplex_count() << '\n';
@@ -95,4 +146,16 @@ int main(int count, char** arguments) {
   write(sample_page<3>("gaussians", {40, 40, 21}, true), folder / "spacetime.html");
   write(sample_page<3>("gyroid", {24, 24, 24}, false), folder / "still.html");
   write({std::make_unique<SimplexMesh<4>>(), {}}, folder / "empty.html");
+  if (!has_field_pages()) return 0;
+  write_kinds(exact_blobs(), 127.5, "exact", folder);
+  const Field exact = exact_blobs();
+  Page other;
+  other.options.axes = exact.info.axes;
+  other.options.has_time = true;
+  other.options.isovalue = 60;
+  other.mesh = std::make_unique<SimplexMesh<4>>(take(extract(exact.view<std::uint8_t, 4>(), 60)));
+  write(other, folder / "exact_60.html");
+  SampleOptions sample;
+  sample.dims = {24, 24, 24, 21};
+  write_kinds(take(make_sample("gaussians", sample)), 0.5, "rounded", folder);
 }

@@ -32,7 +32,7 @@ export class App {
   readonly surface: Surface;
   readonly view: SceneView;
   readonly colourings: Colouring[];
-  readonly events: TrackEvent[]; // those that are shown, by time
+  private readonly allEvents: TrackEvent[]; // those to be shown, by time
   private readonly listeners: ((state: State, changed: Set<keyof State>) => void)[] = [];
   private shownColour = "";
   private components: { count: number; ofVertex: Uint32Array } | null = null;
@@ -40,15 +40,19 @@ export class App {
   private direction = 1;
   private hashTimer = 0;
   readonly frameTimes: number[] = [];
+  private readonly meshListeners: (() => void)[] = [];
+  shownIsovalue: number; // that of the surface, which comes a little later than it is asked for
 
-  constructor(readonly mesh: Mesh, readonly space: Space, readonly metadata: Metadata) {
+  constructor(public mesh: Mesh, readonly space: Space, readonly metadata: Metadata,
+    private readonly isovalues: [number, number] | null) {
     this.surface = new Surface(mesh, space);
     this.view = new SceneView(element("stage"), element("view"), element("labels"), space, this.surface);
-    this.events = (metadata.tracking?.events ?? []).filter((event) => !event.simplified && !event.type.startsWith("open"))
+    this.allEvents = (metadata.tracking?.events ?? []).filter((event) => !event.simplified && !event.type.startsWith("open"))
       .sort((a, b) => a.time - b.time);
     this.colourings = this.listColourings();
     this.initial = this.valid(initialState(metadata, space));
     this.state = this.initial;
+    this.shownIsovalue = this.initial.isovalue;
     this.view.controls.addEventListener("end", () => this.set({ camera: this.view.pose().map((x) => Number(x.toPrecision(6))) }));
     this.view.afterRender = (milliseconds) => {
       this.frameTimes.push(milliseconds);
@@ -70,7 +74,33 @@ export class App {
 
   private valid(state: State): State {
     const known = this.colourings.some((one) => one.key === state.colour);
-    return known ? state : { ...state, colour: "solid" };
+    const [low, high] = this.isovalues ?? [state.isovalue, state.isovalue];
+    const isovalue = this.isovalues ? Math.max(low, Math.min(high, state.isovalue)) : this.metadata.isovalue ?? 0;
+    return { ...state, isovalue, colour: known ? state.colour : "solid" };
+  }
+
+  /// Shows another surface: that of the same field at another isovalue.
+  useMesh(mesh: Mesh, isovalue: number): void {
+    this.mesh = mesh;
+    this.shownIsovalue = isovalue;
+    this.components = null;
+    this.shownColour = "";
+    this.surface.replace(mesh);
+    this.view.setFrame(this.state.frame, this.state.offset);
+    this.view.marker = null;
+    this.applyColour();
+    for (const listener of this.meshListeners) listener();
+    this.view.request();
+  }
+  onMesh(listener: () => void): void {
+    this.meshListeners.push(listener);
+  }
+  /// Whether the surface is the one that the tracks and attributes of the page belong to.
+  get isOwnSurface(): boolean {
+    return this.shownIsovalue === this.initial.isovalue;
+  }
+  get events(): TrackEvent[] {
+    return this.isOwnSurface ? this.allEvents : [];
   }
 
   onChange(listener: (state: State, changed: Set<keyof State>) => void): void {
@@ -320,7 +350,10 @@ export class App {
   }
 
   get colouring(): Colouring {
-    return this.colourings.find((one) => one.key === this.state.colour) ?? this.colourings[0]!;
+    return this.colourings.find((one) => one.key === this.state.colour && this.canColourBy(one.key)) ?? this.colourings[0]!;
+  }
+  canColourBy(key: string): boolean {
+    return this.isOwnSurface || !(key === "track" || key.startsWith("attribute:"));
   }
   colourRange(): [number, number] {
     return this.state.range ?? this.colouring.range;
@@ -329,16 +362,16 @@ export class App {
   private applyColour(): void {
     const { uniforms } = this.surface;
     const { state, colouring, space } = this;
-    if (this.shownColour !== state.colour) this.uploadColour(state.colour);
+    if (this.shownColour !== colouring.key) this.uploadColour(colouring.key);
     this.surface.setMap(state.map, state.reversed);
     uniforms.highlight.value = state.highlight;
     const [low, high] = this.colourRange();
-    const axis = state.colour === "time" ? space.timeAxis : state.colour.startsWith("axis:") ? Number(state.colour.slice(5)) : -1;
+    const axis = colouring.key === "time" ? space.timeAxis : colouring.key.startsWith("axis:") ? Number(colouring.key.slice(5)) : -1;
     if (axis >= 0) {
       uniforms.colourMode.value = 1;
       uniforms.colourAxis.value.set(...([0, 1, 2, 3].map((k) => (k === axis ? 1 : 0)) as Vector4));
       uniforms.colourRange.value.set(space.scene(axis, low), space.scene(axis, high));
-    } else if (state.colour === "speed") {
+    } else if (colouring.key === "speed") {
       uniforms.colourMode.value = 2;
       uniforms.colourRange.value.set(low / this.speedScale(), high / this.speedScale());
     } else if (colouring.kind === "range") {

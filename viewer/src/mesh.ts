@@ -31,7 +31,7 @@ export class MeshReader {
   }
 
   add(bytes: Uint8Array): void {
-    const { vertices, simplices } = this.metadata.blocks[this.block]!;
+    const { vertices, simplices } = this.metadata.blocks![this.block]!;
     const { dimension, attributes } = this.metadata;
     const corners = this.metadata.simplexDimension + 1;
     const expected = 2 * vertices * (dimension + attributes.length) + 3 * corners * simplices;
@@ -65,7 +65,7 @@ export class MeshReader {
   }
 
   finish(space: Space): Mesh {
-    if (this.block !== this.metadata.blocks.length) throw new Error("a part of the data is missing");
+    if (this.block !== this.metadata.blocks!.length) throw new Error("a part of the data is missing");
     const mesh = {
       corners: (this.metadata.simplexDimension + 1) as 3 | 4,
       vertexCount: this.metadata.vertices,
@@ -89,9 +89,19 @@ function readSteps(
   }
 }
 
+/// The attributes of all vertices, from a part of their own.
+export function readAttributes(bytes: Uint8Array, count: number, vertices: number): Uint16Array[] {
+  if (bytes.length !== 2 * vertices * count) throw new Error("the attributes are damaged");
+  return Array.from({ length: count }, (_, k) => {
+    const values = new Uint16Array(vertices);
+    readSteps(bytes, 2 * vertices * k, vertices, values, 0, 1);
+    return values;
+  });
+}
+
 type Shape = Pick<Mesh, "corners" | "vertexCount" | "simplexCount" | "levels" | "simplices">;
 
-function boxesOf(mesh: Shape): Float32Array {
+export function boxesOf(mesh: Shape): Float32Array {
   const chunks = Math.ceil(mesh.simplexCount / CHUNK);
   const boxes = new Float32Array(8 * chunks);
   for (let chunk = 0; chunk < chunks; ++chunk) {
@@ -111,7 +121,7 @@ function boxesOf(mesh: Shape): Float32Array {
 }
 
 /// Normals in scene coordinates: of each vertex the sum of those of its simplices, weighted by content.
-function normalsOf(mesh: Shape, space: Space): Int8Array {
+export function normalsOf(mesh: Shape, space: Space): Int8Array {
   const sums = new Float32Array(4 * mesh.vertexCount);
   const [sx, sy, sz, sw] = space.scale as [number, number, number, number];
   const { levels, simplices } = mesh;

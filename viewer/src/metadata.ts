@@ -43,6 +43,23 @@ export interface Tracking {
   events: TrackEvent[];
 }
 
+/// Samples as whole numbers; src/view/sample_codes.hpp. The data are then the module, `blocks` parts of so many
+/// layers, and, if there are attributes, those of all vertices of the surface at the page's isovalue.
+export interface SamplesMetadata {
+  band: boolean; // only those that the surface at the page's isovalue needs
+  narrow: boolean;
+  special: boolean;
+  inside: "above" | "below";
+  method: number;
+  firstClass: number;
+  origin: number; // value = origin + code * step
+  step: number;
+  isovalue: number; // as a code
+  axes: { count: number; first: number; origin: number; spacing: number; coordinates?: number[] }[];
+  blocks: number[];
+  world?: { linear: number[]; offset: number[] };
+}
+
 export interface Metadata {
   format: 1;
   title: string;
@@ -56,7 +73,8 @@ export interface Metadata {
   attributes: AttributeMetadata[];
   colourBy: string;
   notes: string[];
-  blocks: { vertices: number; simplices: number }[];
+  blocks?: { vertices: number; simplices: number }[]; // of a page that holds the surface
+  samples?: SamplesMetadata; // of one that holds samples, and the module that extracts from them
   isovalue?: number;
   tracking?: Tracking;
 }

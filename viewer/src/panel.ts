@@ -31,7 +31,9 @@ export function buildPanel(app: App): void {
   buildColour(app);
   buildView(app);
   buildClip(app);
+  element<HTMLDetailsElement>("about").open = app.metadata.notes.length > 0;
   buildAbout(app);
+  app.onMesh(() => buildAbout(app));
 }
 
 function buildPresets(app: App): void {
@@ -129,6 +131,10 @@ function buildColour(app: App): void {
     input("opacity").value = String(state.opacity);
     if (["colour", "map", "reversed", "range"].some((key) => changed.has(key as keyof State))) showLegend(app);
   });
+  app.onMesh(() => {
+    for (const one of select("colour").options) one.disabled = !app.canColourBy(one.value);
+    showLegend(app);
+  });
 }
 
 function showLegend(app: App): void {
@@ -148,7 +154,7 @@ function showLegend(app: App): void {
     const width = 100 / Math.min(12, labels.length);
     const stops = labels.slice(0, 12).map((label, i) => `${labelColour(label)} ${width * i}% ${width * (i + 1)}%`);
     element("legend-bar").style.background = `linear-gradient(to right, ${stops.join(", ")})`;
-    const what = state.colour === "component" ? "component" : state.colour === "track" ? "track" : "value";
+    const what = colouring.key === "component" ? "component" : colouring.key === "track" ? "track" : "value";
     element("legend-low").textContent = `${labels.length} ${what}${labels.length === 1 ? "" : "s"}`;
     element("legend-high").textContent = "";
   }
@@ -157,10 +163,10 @@ function showLegend(app: App): void {
 /// The labels of the colouring that is shown: as the graphics card has them.
 function shownLabels(app: App): number[] {
   const range = (count: number): number[] => Array.from({ length: count }, (_, i) => i);
-  if (app.state.colour === "component") return range(app.componentCount());
-  if (app.state.colour === "track" && app.metadata.tracking) return app.metadata.tracking.tracks.map((track) => track.id);
-  const attribute = app.metadata.attributes[app.state.colour === "track" ? app.trackAttribute() : Number(app.state.colour.slice(10))];
-  return attribute?.kind === "label" ? (app.state.colour === "track" ? attribute.labels : range(attribute.labels.length)) : [];
+  if (app.colouring.key === "component") return range(app.componentCount());
+  if (app.colouring.key === "track" && app.metadata.tracking) return app.metadata.tracking.tracks.map((track) => track.id);
+  const attribute = app.metadata.attributes[app.colouring.key === "track" ? app.trackAttribute() : Number(app.colouring.key.slice(10))];
+  return attribute?.kind === "label" ? (app.colouring.key === "track" ? attribute.labels : range(attribute.labels.length)) : [];
 }
 
 function buildView(app: App): void {
@@ -224,11 +230,13 @@ function buildClip(app: App): void {
 }
 
 function buildAbout(app: App): void {
-  const { metadata, space, mesh } = app;
+  const { metadata, space } = app;
+  element("about-text").replaceChildren();
   const lines: string[] = [];
   if (metadata.isovalue !== undefined)
-    lines.push(`Isosurface of ${metadata.field || "the field"} at ${metadata.isovalue}.`);
+    lines.push(`Isosurface of ${metadata.field || "the field"} at ${app.shownIsovalue}.`);
   const count = (n: number): string => n.toLocaleString("en");
+  const { mesh } = app;
   const kind = mesh.corners === 4 ? "tetrahedra in four dimensions" : "triangles";
   lines.push(`${count(mesh.simplexCount)} ${kind}, ${count(mesh.vertexCount)} vertices.`);
   for (const [k, axis] of space.axes.entries()) {
@@ -247,5 +255,4 @@ function buildAbout(app: App): void {
   for (const note of metadata.notes) paragraph(note, "note");
   for (const line of lines) paragraph(line);
   paragraph("Made with hyperiso. This file holds all it needs: it works without a network.");
-  (element("about") as unknown as HTMLDetailsElement).open = metadata.notes.length > 0;
 }

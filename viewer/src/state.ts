@@ -25,6 +25,7 @@ export interface State {
   theme: "auto" | "light" | "dark";
   camera: number[] | null; // position and target; null: as at first
   highlight: number; // a label; -1: none
+  isovalue: number; // asked for; the page's own, where it holds no field
 }
 
 export function initialState(metadata: Metadata, space: Space): State {
@@ -52,6 +53,7 @@ export function initialState(metadata: Metadata, space: Space): State {
     theme: "auto",
     camera: null,
     highlight: -1,
+    isovalue: metadata.isovalue ?? 0,
   };
 }
 
@@ -115,7 +117,7 @@ export function fromHash(hash: string, initial: State, space: Space): State {
   among("clipAxis", [-1, 0, 1, 2], (x) => (state.clipAxis = x));
   for (const key of ["reversed", "wireframe", "axes", "clipFlip", "hideBeyond"] as const)
     among(key, [true, false], (x) => (state[key] = x));
-  for (const key of ["speed", "opacity", "clipAt"] as const) {
+  for (const key of ["speed", "opacity", "clipAt", "isovalue"] as const) {
     const value = numbers(key, 1);
     if (value) state[key] = value[0]!;
   }

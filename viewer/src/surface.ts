@@ -52,8 +52,9 @@ function chunkIndex(pattern: readonly number[]): BufferAttribute {
 
 export class Surface {
   readonly object = new Group();
-  private readonly vertices: DataTexture;
-  private readonly chunkList: DataTexture;
+  private mesh!: Mesh;
+  private vertices!: DataTexture;
+  private chunkList!: DataTexture;
   private readonly faces = new InstancedBufferGeometry();
   private readonly edges = new InstancedBufferGeometry();
   private readonly opaque: ThreeMesh;
@@ -63,15 +64,13 @@ export class Surface {
   cutChunkCount = 0;
   readonly uniforms;
 
-  constructor(private readonly mesh: Mesh, private readonly space: Space) {
-    this.vertices = integerTexture(packedVertices(mesh), 4);
-    this.chunkList = integerTexture(new Uint32Array(Math.max(1, mesh.boxes.length / 8)), 1);
+  constructor(mesh: Mesh, private readonly space: Space) {
     this.uniforms = {
-      vertices: { value: this.vertices },
-      simplices: { value: integerTexture(mesh.simplices as Uint32Array<ArrayBuffer>, 4) },
-      chunks: { value: this.chunkList },
-      simplexCount: { value: mesh.simplexCount },
-      corners: { value: mesh.corners },
+      vertices: { value: null as DataTexture | null },
+      simplices: { value: null as DataTexture | null },
+      chunks: { value: null as DataTexture | null },
+      simplexCount: { value: 0 },
+      corners: { value: 0 },
       scale: { value: new ThreeVector4(...space.scale) },
       shift: { value: new ThreeVector4(...space.shift) },
       frame: { value: new Matrix4() },
@@ -108,6 +107,19 @@ export class Surface {
     this.wireframe.renderOrder = 3;
     this.setOpacity(1);
     this.setWireframe(false, 1);
+    this.replace(mesh);
+  }
+
+  /// Another surface instead, in the same space; the plane and the attribute are to be set again.
+  replace(mesh: Mesh): void {
+    const { uniforms } = this;
+    for (const uniform of [uniforms.vertices, uniforms.simplices, uniforms.chunks]) uniform.value?.dispose();
+    this.mesh = mesh;
+    uniforms.vertices.value = this.vertices = integerTexture(packedVertices(mesh), 4);
+    uniforms.simplices.value = integerTexture(mesh.simplices as Uint32Array<ArrayBuffer>, 4);
+    uniforms.chunks.value = this.chunkList = integerTexture(new Uint32Array(Math.max(1, mesh.boxes.length / 8)), 1);
+    uniforms.simplexCount.value = mesh.simplexCount;
+    uniforms.corners.value = mesh.corners;
   }
 
   private material(options: { side?: number; wire?: number; transparent?: boolean }): RawShaderMaterial {

@@ -51,13 +51,27 @@ export function buildTracking(app: App): void {
   const host = element("tracking");
   host.hidden = false;
   element("dock").classList.add("with-tracks");
+  const { events } = app;
   const lanes = lanesOf(tracks);
   const axis = app.space.axes[app.space.timeAxis]!;
   const largestVolume = tracks.reduce((largest, track) => Math.max(largest, track.max_volume ?? 0), 0);
   const height = TOP * 2 + LANE * (Math.max(...lanes.values()) + 1);
   const drawing = svg("svg", { height, role: "group", "aria-label": "Tracks and events through time" });
   const now = svg("line", { class: "now", y1: 0, y2: height });
-  host.replaceChildren(drawing);
+  const stale = document.createElement("p");
+  stale.className = "stale";
+  const back = document.createElement("button");
+  Object.assign(back, { type: "button", textContent: `Back to ${app.initial.isovalue}` });
+  back.addEventListener("click", () => app.set({ isovalue: app.initial.isovalue }));
+  stale.append(`Tracks and events are those of isovalue ${app.initial.isovalue}. `, back);
+  host.replaceChildren(drawing, stale);
+  const showStale = (): void => {
+    stale.hidden = app.isOwnSurface;
+    drawing.classList.toggle("dimmed", !app.isOwnSurface);
+    drawing.toggleAttribute("inert", !app.isOwnSurface);
+  };
+  showStale();
+  app.onMesh(showStale);
   const y = (track: number) => TOP + LANE * (lanes.get(track)! + 0.5);
   let x = (time: number) => time;
 
@@ -69,9 +83,9 @@ export function buildTracking(app: App): void {
     x = (time) => side + ((slider.width - 16) * (time - axis.minimum)) / (axis.maximum - axis.minimum || 1);
     drawing.replaceChildren();
     drawing.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    for (const event of app.events) drawLinks(event);
+    for (const event of events) drawLinks(event);
     for (const track of tracks) drawing.append(lane(track));
-    const shown = app.events.filter((event) => [...event.in, ...event.out].some((id) => lanes.has(id)));
+    const shown = events.filter((event) => [...event.in, ...event.out].some((id) => lanes.has(id)));
     const byWeight = [...shown].sort((a, b) => Number(isMinor(b.type)) - Number(isMinor(a.type)));
     for (const event of byWeight) drawing.append(glyph(event, shown.length <= MOST_NAMED));
     drawing.append(now);

@@ -26,6 +26,10 @@ export function buildTransport(app: App): void {
     if (changed.has("frame")) showRange(app);
     if (changed.has("frame") || changed.has("offset")) showPosition(app);
   });
+  app.onMesh(() => {
+    showRange(app);
+    showPosition(app);
+  });
 }
 
 function showRange(app: App): void {
