@@ -42,10 +42,12 @@ bool has_field_pages();
 /// Writes one self-contained HTML file: the viewer and the mesh, no reference to anything outside. It opens
 /// in any browser with WebGL 2 (all current ones), also from a disk without a network.
 ///
-/// Meshes: tetrahedra in R^4 and triangles in R^3. Coordinates are stored with 16 bits along each axis; the
-/// samples of an evenly spaced axis fall on exact levels, so that a slice at a step is that step's surface.
-/// Attributes of one component are kept with 16 bits: real ones between their minimum and maximum, integers
-/// as labels. An attribute of simplices becomes one of their first vertices.
+/// Meshes: tetrahedra in R^4 and triangles in R^3; and interval volumes in R^2 and R^3 whose vertices have
+/// the attribute `isovalue`, as `interval` makes them: the page slides between their isovalues. Coordinates
+/// are stored with 16 bits along each axis; the samples of an evenly spaced axis fall on exact levels, so
+/// that a slice at a step is that step's surface. Attributes of one component are kept with 16 bits: real
+/// ones between their minimum and maximum, integers as labels. An attribute of simplices becomes one of their
+/// first vertices.
 ///
 /// About 5 bytes per tetrahedron in the file, 19 on the graphics card.
 ///

@@ -248,7 +248,8 @@ void print_outcome(const View& options, const Content& content, double write_sec
   }
   Report report;
   report.add("vertices", grouped(content.surface.vertices));
-  report.add(simplex_noun(dimension - 1), grouped(content.surface.simplices));
+  report.add(simplex_noun(content.mesh ? content.mesh->simplex_dimension : dimension - 1),
+             grouped(content.surface.simplices));
   if (content.page.tracking)
     report.add("tracks",
                fmt::format("{}, {} events", content.tracking.tracks.size(), content.tracking.events.size()));
@@ -346,7 +347,9 @@ Command view_command(CLI::App& program) {
        {"Writes one file that opens in any current browser, without a network: it plays the surface through "
         "time, continuously and exactly, cuts it by any hyperplane of space and time, colours it, reads "
         "points, "
-        "saves pictures and slices. Surfaces of 3D and 4D fields.",
+        "saves pictures and slices. Surfaces of 3D and 4D fields; interval volumes of 2D and 3D fields, "
+        "between whose "
+        "isovalues the page slides.",
         "A page takes about 5 bytes per tetrahedron, with --payload band 0.3, with --payload field 1 to 2 "
         "per "
         "sample."},
@@ -355,6 +358,9 @@ Command view_command(CLI::App& program) {
          "water.html"},
         {"with what merges and parts on the time line",
          "hyperiso view examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 --track -o tracked.html"},
+        {"how the surface depends on the isovalue, from 0.3 to 0.7",
+         "hyperiso interval volume.nrrd --range 0.3:0.7 -o shell.vtu && hyperiso view shell.vtu -o "
+         "shell.html"},
         {"with a slider for the isovalue", "hyperiso view examples/data/alpha_water_24x24x24x41.nrrd --iso "
                                            "0.5 --payload field -o levels.html"}}});
   return {app, [options] { return run(*options); }};

@@ -6,9 +6,11 @@
 
 #include "hyperiso/convert.hpp"
 #include "hyperiso/extract.hpp"
+#include "hyperiso/interval.hpp"
 #include "hyperiso/sample.hpp"
 #include "hyperiso/view.hpp"
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
@@ -72,6 +74,27 @@ void write(const Page& page, const std::filesystem::path& path) {
   if (status) return;
   std::cerr << status.error().message << '\n';
   std::exit(1);
+}
+
+// The balls of radius 1 - isovalue for the isovalues from 0.2 to 0.6, with a level at 0.4.
+Page levels_page() {
+  FieldInfo info;
+  for (const char* name : {"x", "y", "z"})
+    info.axes.push_back({.count = 33, .origin = -1, .spacing = 2.0 / 32, .name = name, .unit = "mm"});
+  const NewField made = take(allocate_field(info));
+  const FieldView<const float, 3> view = made.field.view<float, 3>();
+  auto* sample = reinterpret_cast<float*>(made.samples);
+  for (std::int64_t z = 0; z < 33; ++z)
+    for (std::int64_t y = 0; y < 33; ++y)
+      for (std::int64_t x = 0; x < 33; ++x)
+        *sample++ = static_cast<float>(1 - std::hypot(info.axes[0].coordinate(x), info.axes[1].coordinate(y),
+                                                      info.axes[2].coordinate(z)));
+  const double levels[] = {0.2, 0.4, 0.6};
+  Page page;
+  page.options.title = "levels";
+  page.options.axes = info.axes;
+  page.mesh = std::make_unique<VolumeMesh<3>>(take(interval(view, levels)));
+  return page;
 }
 
 // The blobs in whole numbers, which all kinds of pages keep as they are.
@@ -146,6 +169,7 @@ int main(int count, char** arguments) {
   write(sample_page<3>("gaussians", {40, 40, 21}, true), folder / "spacetime.html");
   write(sample_page<3>("gyroid", {24, 24, 24}, false), folder / "still.html");
   write({std::make_unique<SimplexMesh<4>>(), {}}, folder / "empty.html");
+  write(levels_page(), folder / "levels.html");
   if (!has_field_pages()) return 0;
   write_kinds(exact_blobs(), 127.5, "exact", folder);
   const Field exact = exact_blobs();

@@ -66,7 +66,8 @@ export interface Metadata {
   field: string;
   dimension: 3 | 4;
   simplexDimension: 2 | 3;
-  time: boolean;
+  time: boolean; // the last axis is time
+  levels?: boolean; // the last axis is the isovalue: the surface is an interval volume lifted by it
   axes: AxisMetadata[];
   vertices: number;
   simplices: number;

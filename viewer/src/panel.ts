@@ -47,7 +47,7 @@ function buildPresets(app: App): void {
     buttons.push({ axis, button });
   };
   const order = app.space.axes.map((_, k) => k);
-  if (app.space.timeAxis >= 0) order.unshift(order.pop()!);
+  if (app.space.timeAxis >= 0 || app.metadata.levels) order.unshift(order.pop()!);
   for (const k of order)
     add(k, app.space.axes[k]!.name, `Plane across ${app.space.axes[k]!.name}`, () => app.acrossAxis(k));
   add(-1, "oblique", "A plane across all axes; tilt it below", () => app.diagonal());
@@ -244,7 +244,9 @@ function buildAbout(app: App): void {
     lines.push(`${axis.name}: ${readable(axis.minimum, step)} to ${readable(axis.maximum, step)} ${axis.unit}` +
       `${axis.samples ? `, ${count(axis.samples)} samples` : ""}${k === space.timeAxis ? " (time)" : ""}.`);
   }
-  if (mesh.corners === 4)
+  if (metadata.levels)
+    lines.push("A cut across isovalue is the isosurface at that value; between two levels it runs linearly from one surface to the other.");
+  else if (mesh.corners === 4)
     lines.push("Between two steps the field is interpolated linearly, so every moment is a true cut of one surface in space and time.");
   const paragraph = (text: string, className = ""): void => {
     const p = document.createElement("p");

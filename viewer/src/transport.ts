@@ -80,7 +80,8 @@ function stepText(app: App, position: number): string {
   const next = stops[below + 1];
   const share = next === undefined ? 0 : (position - stops[below]!) / (next - stops[below]!);
   const at = share < 1e-6 ? String(below) : (below + share).toFixed(1);
-  return `${app.axis === app.space.timeAxis ? "step" : "sample"} ${at} of ${samples - 1}`;
+  const isLevel = app.metadata.levels && app.axis === app.space.dimension - 1;
+  return `${app.axis === app.space.timeAxis ? "step" : isLevel ? "level" : "sample"} ${at} of ${samples - 1}`;
 }
 
 export function buildKeys(app: App, save: { picture(): void }): void {

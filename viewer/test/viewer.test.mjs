@@ -612,6 +612,49 @@ describe("surfaces in three dimensions", () => {
   });
 });
 
+describe("the page of an interval volume", () => {
+  test("slides between the isovalues: balls of the radii that they have", async () => {
+    const { page, problems, close } = await open("levels.html");
+    assert.match(await page.textContent("#position"), /^isovalue = 0\.4\d* *level 1 of 2$/);
+    assert.equal(await page.textContent("#subtitle"), "isovalues 0.2 to 0.6");
+    const first = await page.locator("#presets button").first().textContent();
+    assert.equal(first, "isovalue");
+    for (const isovalue of [0.2, 0.3, 0.4, 0.52, 0.6]) {
+      await slide(page, "#scrub", isovalue);
+      near((await page.evaluate(() => probe.area())) / (4 * Math.PI * (1 - isovalue) ** 2), 1, 0.02);
+      const masks = await page.evaluate(() => probe.compareMasks());
+      assert.ok(masks.gpu > 1000 && masks.differing <= 2, JSON.stringify(masks));
+    }
+    await page.focus("#view");
+    await page.keyboard.press("Home");
+    near(await position(page), 0.2);
+    await page.keyboard.press("ArrowRight");
+    near(await position(page), 0.4);
+    await page.click("#play");
+    await page.waitForFunction(() => hyperiso.toPosition(hyperiso.state.offset) > 0.41);
+    await page.click("#play");
+    await page.selectOption("#colour", "axis:3");
+    assert.match(await page.textContent("#legend"), /isovalue/);
+    assert.deepEqual(problems, []);
+    await close();
+  });
+
+  test("shows the outside of the ball lit, not its inside", async () => {
+    const { page, close } = await open("levels.html");
+    // Of the normals, those of the surface point away from the middle.
+    const wrong = await page.evaluate(() => {
+      hyperiso.moveTo(0.45);
+      const { positions: p, count } = hyperiso.slice();
+      const normals = hyperiso.slice().normals;
+      let wrong = 0;
+      for (let at = 0; at < 9 * count; at += 9) wrong += p[at] * normals[at] + p[at + 1] * normals[at + 1] + p[at + 2] * normals[at + 2] < 0;
+      return wrong / count;
+    });
+    assert.equal(wrong, 0);
+    await close();
+  });
+});
+
 describe("what goes wrong is said", () => {
   const whole = () => readFileSync(join(folder, "blobs.html"), "latin1");
   const failure = async (name, content, prepare) => {
