@@ -51,14 +51,14 @@ export async function buildIsovalue(app: App, source: FieldSource | null,
   });
 }
 
-/// How the samples spread over the values; roots, since a few values often have most of the samples.
+/// How the samples spread over the values; logarithms, since a few values often have most of the samples.
 function drawHistogram(counts: number[], own: number): void {
   const drawing = document.createElementNS(SVG, "svg");
   drawing.setAttribute("viewBox", `0 0 ${counts.length} 32`);
   drawing.setAttribute("preserveAspectRatio", "none");
-  const largest = Math.sqrt(Math.max(1, ...counts));
+  const largest = Math.log1p(Math.max(1, ...counts));
   const bars = document.createElementNS(SVG, "path");
-  bars.setAttribute("d", counts.map((count, i) => `M${i} 32V${(32 - (31 * Math.sqrt(count)) / largest).toFixed(2)}h1V32z`).join(""));
+  bars.setAttribute("d", counts.map((count, i) => `M${i} 32V${(32 - (31 * Math.log1p(count)) / largest).toFixed(2)}h1V32z`).join(""));
   const mark = document.createElementNS(SVG, "path");
   mark.setAttribute("class", "own");
   mark.setAttribute("d", `M${(own * counts.length).toFixed(2)} 0V32`);

@@ -64,7 +64,8 @@ function buildTilts(app: App): void {
   if (dimension === 4)
     for (let i = 0; i < 4; ++i)
       for (let j = i + 1; j < 4; ++j) {
-        const name = `${axes[i]!.name}${axes[j]!.name}`;
+        const short = [axes[i]!.name, axes[j]!.name].map((name) => name.slice(0, 3));
+        const name = short.join(short.some((one) => one.length > 1) ? " " : "");
         const control = slider(-180, 180, 0, `Rotate in the plane of ${axes[i]!.name} and ${axes[j]!.name}, degrees`);
         const entry = { control, used: 0 };
         // The slider tells how far to turn from where it stood: turns of different planes do not commute.

@@ -56,6 +56,7 @@ export function readable(value: number, step: number): string {
   if (!Number.isFinite(value)) return String(value);
   const digits = Math.min(8, Math.max(0, Math.ceil(-Math.log10(Math.abs(step) || 1) - 0.001)));
   const magnitude = Math.abs(value);
+  if (magnitude < Math.abs(step) / 100) return (0).toFixed(digits);
   if (magnitude !== 0 && (magnitude >= 1e6 || magnitude < 1e-4)) return value.toPrecision(4).replace(/\.?0+e/, "e");
   const text = value.toFixed(digits);
   return Number(text) === 0 ? (0).toFixed(digits) : text;

@@ -43,6 +43,23 @@ function glyphOf(type: string): SVGElement {
   return svg("circle", { r: 4.5 });
 }
 
+/// What the glyphs mean, for the line under the lanes.
+const KEY: [name: string, types: string[]][] = [
+  ["merge", ["merge"]],
+  ["split", ["split"]],
+  ["several at once", ["compound"]],
+  ["begin, end", ["birth", "death", "enter", "exit"]],
+  ["change of topology", ["genus", "touch"]],
+];
+
+function pictureOf(type: string): SVGElement {
+  const drawing = svg("svg", { viewBox: "-8 -8 16 16", "aria-hidden": "true" });
+  const glyph = svg("g", { class: isMinor(type) ? "glyph-sample minor" : "glyph-sample" });
+  glyph.append(glyphOf(type));
+  drawing.append(glyph);
+  return drawing;
+}
+
 export function buildTracking(app: App): void {
   const { tracking } = app.metadata;
   if (!tracking || app.space.timeAxis < 0) return;
@@ -58,13 +75,18 @@ export function buildTracking(app: App): void {
   const height = TOP * 2 + LANE * (Math.max(...lanes.values()) + 1);
   const drawing = svg("svg", { height, role: "group", "aria-label": "Tracks and events through time" });
   const now = svg("line", { class: "now", y1: 0, y2: height });
+  const key = document.createElement("p");
+  key.className = "glyph-key";
+  for (const [name, types] of KEY)
+    if (events.some((event) => types.includes(event.type))) key.append(pictureOf(types[0]!), name);
+  if (key.childNodes.length) key.append(Object.assign(document.createElement("span"), { textContent: "Click one to go there." }));
   const stale = document.createElement("p");
   stale.className = "stale";
   const back = document.createElement("button");
   Object.assign(back, { type: "button", textContent: `Back to ${app.initial.isovalue}` });
   back.addEventListener("click", () => app.set({ isovalue: app.initial.isovalue }));
   stale.append(`Tracks and events are those of isovalue ${app.initial.isovalue}. `, back);
-  host.replaceChildren(drawing, stale);
+  host.replaceChildren(drawing, key, stale);
   const showStale = (): void => {
     stale.hidden = app.isOwnSurface;
     drawing.classList.toggle("dimmed", !app.isOwnSurface);

@@ -511,6 +511,7 @@ describe("the page of a tracking result", () => {
     assert.equal(await page.locator(".lane").count(), 2);
     assert.deepEqual(await page.locator(".glyph").allTextContents(), ["merge at t = 0.595 smerge"]);
     assert.equal(await page.locator(".mark").count(), 1);
+    assert.equal(await page.textContent(".glyph-key"), "mergeClick one to go there.");
     assert.equal(await state(page, "colour"), "track");
     assert.match(await page.textContent("#legend"), /2 tracks/);
     // A mark stands where the slider's handle is at that time.
