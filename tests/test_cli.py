@@ -25,11 +25,22 @@ from pathlib import Path
 PROGRAM = Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else Path("build/release/bin/hyperiso").resolve()
 ROOT = Path(__file__).resolve().parent.parent
 WATER = "examples/data/alpha_water_24x24x24x41.nrrd"
-VERBS = ["info", "extract", "interval", "slice", "morph", "track", "measure", "table", "sample", "convert"]
+VERBS = ["info", "extract", "interval", "slice", "animate", "morph", "track", "measure", "table", "sample", "convert"]
 
 HAS_VIEW = b"\n  view " in subprocess.run([PROGRAM, "--help"], capture_output=True, check=True).stdout
 if HAS_VIEW:
     VERBS.append("view")
+
+# Films need Embree and cairo in the build and ffmpeg on PATH; the film below has no frames' worth of work.
+def draws(name):
+    with tempfile.TemporaryDirectory() as folder:
+        field = os.path.join(folder, "field.nrrd")
+        subprocess.run([PROGRAM, "sample", "ball", "--dims", "4,4,4,2", "-o", field], check=True, capture_output=True)
+        run = subprocess.run([PROGRAM, "animate", field, "--iso", "0.5", "--frames", "1", "--size", "64x64", "-o",
+                              os.path.join(folder, name)], capture_output=True, check=False)
+        return run.returncode == 0
+
+HAS_PICTURES, HAS_FILMS = draws("%d.png"), draws("film.mp4")
 
 EXTRACT_KEYS = ["dimension", "dims", "isovalue", "method", "inside", "vertices", "simplices", "active_cells", "seconds",
                 "peak_memory_bytes"]
@@ -516,6 +527,161 @@ class Output(Case):
         self.assert_refused(2, "sample", "ball", "--dims", "4294967296,4294967296,4294967296", "-o", "a.raw")
 
 
+class Animate(Case):
+    def torus(self, dims="12,12,12,9"):
+        return self.sample("torus-morph", dims, "torus.nrrd")
+
+    def test_a_series_holds_the_slices(self):
+        self.torus()
+        made = self.ok("animate", "torus.nrrd", "--iso", "0.5", "--frames", "5", "-o", "m.pvd", "--json").json()
+        self.assertEqual(list(made), ["frames", "isovalue", "times", "vertices", "simplices", "seconds",
+                                      "peak_memory_bytes"])
+        self.assertEqual((made["frames"], made["times"]), (5, [0, 2]))
+        self.assertEqual(self.files(), ["m.pvd", *(f"m_{i:04}.vtp" for i in range(5)), "torus.nrrd"])
+        self.assertEqual(re.findall(r'timestep="([^"]*)" part="0" file="([^"]*)"', (self.folder / "m.pvd").read_text()),
+                         [(time, f"m_{i:04}.vtp") for i, time in enumerate(["0", "0.5", "1", "1.5", "2"])])
+        for i, time in enumerate(["0", "0.5", "1", "1.5", "2"]):
+            self.ok("slice", "torus.nrrd", "--iso", "0.5", "--time", time, "-o", "cut.vtp")
+            self.assertEqual(self.ok("measure", "cut.vtp", "--json").json(), self.ok("measure", f"m_{i:04}.vtp", "--json").json())
+
+    def test_numbered_files_from_a_field_and_from_its_mesh(self):
+        self.torus()
+        self.ok("extract", "torus.nrrd", "--iso", "0.5", "-o", "torus.vtu")
+        self.ok("animate", "torus.nrrd", "--iso", "0.5", "--times", "0:0.7:0.35,1.25", "-o", "f_%02d.ply")
+        self.ok("animate", "torus.vtu", "--times", "0,0.35,0.7,1.25", "-o", "m_%d.ply")
+        self.assertEqual([name for name in self.files() if name.endswith("ply")],
+                         [f"f_{i:02}.ply" for i in range(4)] + [f"m_{i}.ply" for i in range(4)])
+        for i in range(4):
+            field, mesh = (self.ok("measure", path, "--json").json() for path in [f"f_{i:02}.ply", f"m_{i}.ply"])
+            for key in ["simplices", "vertices", "euler_characteristic", "closed", "bad_facets"]:
+                self.assertEqual(field.get(key), mesh.get(key), key)
+
+    def test_frames_at_events_are_at_their_times(self):
+        self.sample("gaussians", "12,12,12,5", "blobs.nrrd")
+        plain = self.ok("animate", "blobs.nrrd", "--iso", "0.5", "--frames", "3", "-o", "a.pvd", "--json").json()
+        self.ok("track", "blobs.nrrd", "--iso", "0.5", "-o", "tracks")
+        merge = [event["time"] for event in json.loads((self.folder / "tracks/events.json").read_text())["events"]
+                 if event["type"] == "merge"]
+        found = self.ok("animate", "blobs.nrrd", "--iso", "0.5", "--frames", "3", "--events", "-o", "b.pvd", "--json").json()
+        self.assertEqual(found["frames"], plain["frames"] + found["events"])
+        times = [float(time) for time in re.findall(r'timestep="([^"]*)"', (self.folder / "b.pvd").read_text())]
+        self.assertEqual(len(merge), 1)
+        self.assertIn(merge[0], times)
+        self.assertEqual(times, sorted(set(times)))
+
+    def test_colours_have_one_range_for_all_frames(self):
+        self.sample("ball", "12,12,12,5", "ball.nrrd")
+        self.ok("animate", "ball.nrrd", "--iso", "0.5", "--frames", "3", "--colour-by", "x", "-o", "f_%d.ply")
+        self.ok("animate", "ball.nrrd", "--iso", "0.5", "--frames", "3", "--colour-by", "x", "--colour-range", "-1:1", "-o",
+                "g_%d.ply")
+        for name in ["f_0.ply", "g_0.ply"]:
+            self.assertIn(b"property uchar red", (self.folder / name).read_bytes())
+        self.assertNotEqual((self.folder / "f_0.ply").read_bytes(), (self.folder / "g_0.ply").read_bytes())
+
+    def test_glb_is_one_file_of_its_length(self):
+        self.torus()
+        self.ok("animate", "torus.nrrd", "--iso", "0.5", "--frames", "3", "-o", "t.glb")
+        data = (self.folder / "t.glb").read_bytes()
+        magic, version, length, json_length = struct.unpack_from("<4sIII", data)
+        self.assertEqual((magic, version, length), (b"glTF", 2, len(data)))
+        self.assertEqual(len(json.loads(data[20:20 + json_length])["meshes"]), 3)
+
+    @unittest.skipUnless(HAS_PICTURES, "built without pictures")
+    def test_pictures(self):
+        self.torus()
+        arguments = ["animate", "torus.nrrd", "--iso", "0.5", "--frames", "3", "--size", "160x121"]
+        self.ok(*arguments, "--threads", "1", "-o", "a_%d.png")
+        self.ok(*arguments, "--threads", "3", "-o", "b_%d.png")
+        pictures = [(self.folder / f"a_{i}.png").read_bytes() for i in range(3)]
+        for i, picture in enumerate(pictures):
+            self.assertEqual(picture[:8], b"\x89PNG\r\n\x1a\n")
+            self.assertEqual(struct.unpack_from(">II", picture, 16), (160, 121))
+            self.assertEqual(picture, (self.folder / f"b_{i}.png").read_bytes())
+        self.assertEqual(len(set(pictures)), 3)
+        self.ok(*arguments, "--view", "90,0", "-o", "c_%d.png")
+        self.assertNotEqual((self.folder / "c_0.png").read_bytes(), pictures[0])
+        self.sample("ball", "12,12,5", "disc.nrrd", "--time")
+        self.ok("animate", "disc.nrrd", "--iso", "0.5", "--frames", "2", "-o", "d_%d.png")
+
+    @unittest.skipUnless(HAS_FILMS and shutil.which("ffprobe"), "no ffmpeg, or built without pictures")
+    def test_films_hold_their_frames(self):
+        self.torus()
+        for name, coding in [("film.mp4", "h264"), ("film.gif", "gif")]:
+            self.ok("animate", "torus.nrrd", "--iso", "0.5", "--frames", "7", "--size", "128x96", "--fps", "5", "-o", name)
+            stream = json.loads(subprocess.run(
+                ["ffprobe", "-v", "error", "-count_frames", "-show_streams", "-of", "json", name],
+                capture_output=True, check=True).stdout)["streams"][0]
+            self.assertEqual((stream["codec_name"], stream["width"], stream["height"], stream["nb_read_frames"],
+                              stream["r_frame_rate"]), (coding, 128, 96, "7", "5/1"))
+        self.ok("animate", "torus.nrrd", "--iso", "0.5", "--frames", "7", "--size", "128x96", "-o", "f_%d.png")
+
+        def frames(source, *options):
+            return subprocess.run(["ffmpeg", "-v", "error", *options, "-i", source, "-f", "rawvideo", "-pix_fmt", "rgb24", "-"],
+                                  capture_output=True, check=True).stdout
+        film, pictures = frames("film.mp4"), frames("f_%d.png", "-start_number", "0")
+        self.assertEqual(len(film), len(pictures))
+        self.assertLess(sum(abs(a - b) for a, b in zip(film, pictures)) / len(film), 3)
+
+    @unittest.skipUnless(HAS_FILMS, "no ffmpeg, or built without pictures")
+    def test_without_ffmpeg_it_says_so_before_the_work(self):
+        self.torus()
+        (self.folder / "film.mp4").write_text("keep me")
+        self.assert_refused(1, "animate", "torus.nrrd", "--iso", "0.5", "--frames", "3", "-o", "film.mp4", words=["ffmpeg"],
+                            env={"PATH": "/nowhere"})
+
+    def test_wrong_usage(self):
+        self.torus()
+        self.ok("extract", "torus.nrrd", "--iso", "0.5", "-o", "torus.vtu")
+        self.sample("ball", "6,6", "flat.nrrd")
+        self.sample("ball", "4,4,4,4,4", "five.nrrd")
+        ply = ["-o", "f_%d.ply"]
+        for arguments, words in [
+                (["torus.nrrd", "--iso", "0.5", *ply], ["--frames", "--times"]),
+                (["torus.nrrd", "--iso", "0.5", "--frames", "3", "--times", "0.5", *ply], ["--frames", "--times"]),
+                (["torus.nrrd", "--iso", "0.5", "--frames", "0", *ply], ["--frames", "0"]),
+                (["torus.nrrd", "--iso", "0.5", "--frames", "many", *ply], ["--frames", "many"]),
+                (["torus.nrrd", "--iso", "0.5", "--times", "0.5,2.5", *ply], ["2.5", "axis t"]),
+                (["torus.nrrd", "--iso", "0.5", "--times", "0.5,0.25", *ply], ["--times", "0.25"]),
+                (["torus.nrrd", "--iso", "0.5", "--times", "1:0:0.5", *ply], ["--times", "1:0:0.5"]),
+                (["torus.nrrd", "--iso", "0.5", "--frames", "3"], ["-o"]),
+                (["torus.nrrd", "--iso", "0.5", "--frames", "3", "-o", "film.avi"], ["film.avi", ".mp4", ".glb"]),
+                (["torus.nrrd", "--iso", "0.5", "--frames", "3", "-o", "f.ply"], ["f.ply", "f_%04d.ply"]),
+                (["torus.nrrd", "--iso", "0.5", "--frames", "3", "-o", "f_%d_%d.ply"], ["f_%d_%d.ply"]),
+                (["torus.nrrd", "--iso", "0.5", "--frames", "3", "-o", "f_%d.txt"], ["txt"]),
+                (["torus.nrrd", "--frames", "3", *ply], ["--iso"]),
+                (["torus.nrrd", "--iso", "0.5,0.6", "--frames", "3", *ply], ["--iso", "one"]),
+                (["flat.nrrd", "--iso", "0.5", "--frames", "3", *ply], ["2 dimensions"]),
+                (["five.nrrd", "--iso", "0.5", "--frames", "3", *ply], ["5 dimensions"]),
+                (["torus.vtu", "--iso", "0.5", "--frames", "3", *ply], ["--iso"]),
+                (["torus.vtu", "--frames", "3", "--events", *ply], ["--events", "field"]),
+                (["torus.vtu", "--frames", "3", "--normals", *ply], ["--normals"]),
+                (["torus.vtu", "--times", "9", *ply], ["9"]),
+                (["torus.nrrd", "--iso", "0.5", "--frames", "3", "--fps", "5", *ply], ["--fps", ".ply"]),
+                (["torus.nrrd", "--iso", "0.5", "--frames", "3", "--quantise", *ply], ["--quantise", ".ply"]),
+                (["torus.nrrd", "--iso", "0.5", "--frames", "3", "--fps", "0", "-o", "a.glb"], ["--fps", "0"]),
+                (["torus.nrrd", "--iso", "0.5", "--frames", "3", "--colour-by", "density", "-o", "a.glb"], ["density"]),
+                (["torus.nrrd", "--iso", "0.5", "--frames", "3", "--colour-by", "x", "-o", "a.pvd"], ["--colour-by"]),
+                (["torus.nrrd", "--iso", "0.5", "--frames", "3", "--colour-range", "0:1", "-o", "a.glb"], ["--colour-by"])]:
+            self.assert_refused(2, "animate", *arguments, words=words)
+        for name in ["missing/f_%d.ply", "missing/a.glb", "missing/a.pvd"]:
+            self.assert_refused(1, "animate", "torus.nrrd", "--iso", "0.5", "--frames", "3", "-o", name, words=["missing"])
+        if HAS_PICTURES:
+            for options, words in [(["--size", "100"], ["--size", "100"]), (["--size", "9x9"], ["--size", "9"]),
+                                   (["--view", "3"], ["--view"]), (["--view", "0,91"], ["91"]),
+                                   (["--quantise"], ["--quantise", ".png"])]:
+                self.assert_refused(2, "animate", "torus.nrrd", "--iso", "0.5", "--frames", "3", *options, "-o", "f_%d.png",
+                                    words=words)
+            self.assert_refused(2, "animate", "torus.nrrd", "--iso", "0.5", "--frames", "3", "--size", "101x100", "-o",
+                                "f.mp4", words=["--size", "101"])
+
+    def test_an_empty_surface_is_told_and_written(self):
+        self.torus()
+        run = Run("animate", "torus.nrrd", "--iso", "9", "--frames", "2", "-o", "f_%d.ply")
+        self.assertEqual(run.code, 0)
+        self.assertRegex(run.err, r"\Ahyperiso: warning: no surface[^\n]*\n\Z")
+        self.assertEqual(self.files(), ["f_0.ply", "f_1.ply", "torus.nrrd"])
+
+
 class Interruption(Case):
     def interrupt(self, when, *arguments):
         with subprocess.Popen([PROGRAM, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as run:
@@ -542,6 +708,16 @@ class Interruption(Case):
         times = ",".join(str(i / 1000) for i in range(900))
         code, _, _ = self.interrupt(lambda: len(self.files()) > 3, "slice", field, "--iso", "0.5", "--time", times, "-o", "m.pvd")
         self.assertEqual(code, 130)
+        self.assertEqual(self.files(), [field])
+
+    @unittest.skipUnless(HAS_FILMS, "no ffmpeg, or built without pictures")
+    def test_ctrl_c_while_a_film_is_drawn_leaves_none(self):
+        field = self.sample("ball", "16,16,16,4")
+        start = time.monotonic()
+        code, _, _ = self.interrupt(lambda: self.unfinished() and time.monotonic() > start + 0.3, "animate", field, "--iso",
+                                    "0.5", "--frames", "900", "-o", "film.mp4")
+        self.assertEqual(code, 130)
+        time.sleep(0.3)  # ffmpeg ends by itself
         self.assertEqual(self.files(), [field])
 
     def test_ctrl_c_while_computing_leaves_no_file(self):
@@ -903,6 +1079,8 @@ class Manual(Case):
             commands = page[page.index("Examples:"):].split("\n", 1)[1]
             if arguments == ["table"]:
                 commands = commands.replace("table 4 --verify", "table 3 --verify")  # seconds of exact arithmetic
+            if not HAS_FILMS:
+                commands = "\n".join(line for line in commands.splitlines() if ".mp4" not in line)
             run = subprocess.run(["sh", "-e", "-c", commands], env=environment, capture_output=True, check=False)
             self.assertEqual((run.returncode, run.stderr.decode()), (0, ""), arguments)
 

@@ -24,6 +24,10 @@ inline constexpr Colour colour_of_nan{128, 128, 128};
 /// linear in sRGB in between; the viewer (viewer/src/colours.ts) has the same. NaN: colour_of_nan.
 Colour viridis(double share);
 
+/// A colour for a track or another number that is a name: neighbouring numbers are told apart by hue, a
+/// golden angle from one to the next, and by lightness.
+Colour label_colour(std::int64_t label);
+
 /// The values that get the first and the last colour.
 struct ColourRange {
   double low, high;

@@ -24,6 +24,7 @@ Command interval_command(CLI::App& program);
 Command slice_command(CLI::App& program);
 Command track_command(CLI::App& program);
 Command measure_command(CLI::App& program);
+Command animate_command(CLI::App& program);
 Command morph_command(CLI::App& program);
 Command table_command(CLI::App& program);
 Command sample_command(CLI::App& program);

@@ -78,9 +78,9 @@ int run(std::vector<std::string> arguments) {
   program.require_subcommand(1);
   set_manual(program, program_manual());
   std::vector<Command> commands = {
-      info_command(program),   extract_command(program), interval_command(program), slice_command(program),
-      morph_command(program),  track_command(program),   measure_command(program),  table_command(program),
-      sample_command(program), convert_command(program)};
+      info_command(program),    extract_command(program), interval_command(program), slice_command(program),
+      animate_command(program), morph_command(program),   track_command(program),    measure_command(program),
+      table_command(program),   sample_command(program),  convert_command(program)};
 #ifdef HYPERISO_HAS_VIEWER
   commands.push_back(view_command(program));
 #endif

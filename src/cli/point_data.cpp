@@ -67,7 +67,9 @@ Result<Field> SelectedSteps::read(std::int64_t begin, std::int64_t end) {
   return *held_;
 }
 
-void PointDataOptions::add_to(CLI::App& app) {
+std::optional<ColourRange> PointDataOptions::range() const { return parse_colour_range(colour_range); }
+
+void PointDataOptions::add_to(CLI::App& app, const std::string& coloured, const std::string& whole) {
   app.add_option("--with", with,
                  "further fields of the same grid, interpolated at the surface: files, or variables of INPUT "
                  "(.vti, .pvd); they are called as the file or the variable is, or NAME")
@@ -79,19 +81,18 @@ void PointDataOptions::add_to(CLI::App& app) {
                "unit normals from the gradient of the field: smoother than those of the simplices")
       ->group(data_group);
   app.add_option("--colour-by", colour_by,
-                 ".ply: colour the vertices by this data of theirs, one of --with for example")
+                 coloured + ": colour the vertices by this data of theirs, one of --with for example")
       ->type_name("NAME")
       ->group(data_group);
-  app.add_option(
-         "--colour-range", colour_range,
-         "the values of the first and the last colour; left out: the smallest and the largest of each "
-         "file, so give it for a series")
+  app.add_option("--colour-range", colour_range,
+                 "the values of the first and the last colour; left out: the smallest and the largest " +
+                     whole)
       ->type_name("LOW:HIGH")
       ->group(data_group);
 }
 
 void PointDataOptions::check(const MeshOutputOptions& output, const std::string& path) const {
-  (void)parse_colour_range(colour_range);
+  (void)range();
   if (!colour_range.empty() && colour_by.empty()) fail_usage("--colour-range: there is no --colour-by");
   if (path.empty()) return;
   const std::string format = output.format_of(path);
@@ -111,7 +112,7 @@ std::vector<NamedSteps> PointDataOptions::open(const FieldOptions& input,
 }
 
 void PointDataOptions::colour(Mesh& mesh) const {
-  if (!colour_by.empty()) take(colour_vertices(mesh, colour_by, parse_colour_range(colour_range)));
+  if (!colour_by.empty()) take(colour_vertices(mesh, colour_by, range()));
 }
 
 } // namespace hyperiso::cli

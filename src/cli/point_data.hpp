@@ -2,6 +2,7 @@
 // What the vertices of a surface carry: --with, --normals, --colour-by.
 
 #include "cli/options.hpp"
+#include "hyperiso/colours.hpp"
 #include "hyperiso/interpolate.hpp"
 
 namespace hyperiso::cli {
@@ -35,7 +36,10 @@ struct PointDataOptions {
   bool normals = false;
   std::string colour_by, colour_range;
 
-  void add_to(CLI::App& app);
+  // `coloured`: what --colour-by is for; `whole`: what the range is taken of where none is given.
+  void add_to(CLI::App& app, const std::string& coloured = ".ply",
+              const std::string& whole = "of each file, so give it for a series");
+  std::optional<ColourRange> range() const; // --colour-range
   // Whether the field has to be looked at again once there is a surface.
   bool from_field() const { return normals || !with.empty(); }
   // Fails where what is asked for cannot be written as asked.

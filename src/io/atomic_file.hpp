@@ -33,6 +33,8 @@ class AtomicFile {
   void write(const void* data, std::size_t bytes);
   void write(std::string_view characters) { write(characters.data(), characters.size()); }
   bool failed() const { return error_number_ != 0; }
+  // Of the file that is written to, for another program to write it; nothing may have been written here.
+  int descriptor() const { return descriptor_; }
 
   // Leaves room for `bytes` that are known later; `fill` writes them there. One gap at a time. In a file that
   // cannot seek, what follows the gap stays in memory until it is filled.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace hyperiso {
 namespace {
@@ -45,6 +46,22 @@ double share_of(double value, const ColourRange& range) {
   return (value - range.low) / (range.high - range.low);
 }
 
+// Of the OKLab colour space (Ottosson 2020), where equal steps look equal, to sRGB.
+std::array<double, 3> srgb_of_oklch(double lightness, double chroma, double hue) {
+  const double a = chroma * std::cos(hue), b = chroma * std::sin(hue);
+  const double l = std::pow(lightness + 0.3963377774 * a + 0.2158037573 * b, 3);
+  const double m = std::pow(lightness - 0.1055613458 * a - 0.0638541728 * b, 3);
+  const double s = std::pow(lightness - 0.0894841775 * a - 1.2914855480 * b, 3);
+  std::array<double, 3> rgb{4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s,
+                            -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
+                            -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s};
+  for (double& channel : rgb) {
+    channel = std::clamp(channel, 0.0, 1.0);
+    channel = channel <= 0.0031308 ? 12.92 * channel : 1.055 * std::pow(channel, 1 / 2.4) - 0.055;
+  }
+  return rgb;
+}
+
 } // namespace
 
 Colour viridis(double share) {
@@ -56,6 +73,14 @@ Colour viridis(double share) {
     return static_cast<std::uint8_t>(std::lround(std::lerp(a, b, place - static_cast<double>(below))));
   };
   return {between(from.red, to.red), between(from.green, to.green), between(from.blue, to.blue)};
+}
+
+Colour label_colour(std::int64_t label) {
+  const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
+  const double lightness = label % 3 == 0 ? 0.6 : label % 3 == 1 ? 0.68 : 0.52;
+  const auto rgb = srgb_of_oklch(lightness, 0.14, 4.3 + golden_angle * static_cast<double>(label));
+  const auto byte = [](double channel) { return static_cast<std::uint8_t>(std::lround(channel * 255)); };
+  return {byte(rgb[0]), byte(rgb[1]), byte(rgb[2])};
 }
 
 Result<ColourRange> colour_vertices(Mesh& mesh, const std::string& name, std::optional<ColourRange> range) {

@@ -1,39 +1,18 @@
 #include "io/tracking/drawing.hpp"
 
-#include <array>
+#include "hyperiso/colours.hpp"
+
 #include <cmath>
-#include <numbers>
+#include <cstdio>
 
 namespace hyperiso::tracking_files {
-namespace {
-
-// Of the OKLab colour space (Ottosson 2020), where equal steps look equal, to sRGB.
-std::array<double, 3> srgb_of_oklch(double lightness, double chroma, double hue) {
-  const double a = chroma * std::cos(hue), b = chroma * std::sin(hue);
-  const double l = std::pow(lightness + 0.3963377774 * a + 0.2158037573 * b, 3);
-  const double m = std::pow(lightness - 0.1055613458 * a - 0.0638541728 * b, 3);
-  const double s = std::pow(lightness - 0.0894841775 * a - 1.2914855480 * b, 3);
-  std::array<double, 3> rgb{4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s,
-                            -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
-                            -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s};
-  for (double& channel : rgb) {
-    channel = std::clamp(channel, 0.0, 1.0);
-    channel = channel <= 0.0031308 ? 12.92 * channel : 1.055 * std::pow(channel, 1 / 2.4) - 0.055;
-  }
-  return rgb;
-}
-
-} // namespace
 
 std::string colour_of(std::int64_t track) {
-  const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
-  const double lightness = track % 3 == 0 ? 0.6 : track % 3 == 1 ? 0.68 : 0.52;
-  const auto rgb = srgb_of_oklch(lightness, 0.14, 4.3 + golden_angle * static_cast<double>(track));
-  char colour[8];
-  std::snprintf(colour, sizeof colour, "#%02x%02x%02x", static_cast<unsigned>(std::lround(rgb[0] * 255)),
-                static_cast<unsigned>(std::lround(rgb[1] * 255)),
-                static_cast<unsigned>(std::lround(rgb[2] * 255)));
-  return colour;
+  const Colour colour = label_colour(track);
+  char digits[8];
+  std::snprintf(digits, sizeof digits, "#%02x%02x%02x", unsigned{colour.red}, unsigned{colour.green},
+                unsigned{colour.blue});
+  return digits;
 }
 
 std::vector<double> ticks(double low, double high, int wanted) {

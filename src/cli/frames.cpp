@@ -1,0 +1,146 @@
+#include "cli/frames.hpp"
+
+#include "cli/dispatch.hpp"
+#include "cli/failure.hpp"
+#include "core/text.hpp"
+#include "hyperiso/slice.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hyperiso::cli {
+namespace {
+
+constexpr int lowest_animated = 3;
+
+std::pair<double, double> ends_of(const Axis& axis) {
+  return std::minmax({axis.coordinate(0), axis.coordinate(axis.count - 1)});
+}
+
+template <int D>
+class FieldFrames final : public Frames {
+ public:
+  FieldFrames(std::unique_ptr<SelectedSteps> steps, std::vector<NamedSteps> others, double isovalue,
+              ExtractOptions extraction, bool normals, bool quiet)
+      : steps_(std::move(steps)), others_(std::move(others)), isovalue_(isovalue), extraction_(extraction),
+        slicer_(*steps_, isovalue, options_of(extraction, normals)), quiet_(quiet) {}
+
+  const std::vector<Axis>& axes() const override { return steps_->info().axes; }
+  std::pair<double, double> times() const override { return ends_of(axes().back()); }
+  void check(double time) const override { (void)take(samples_around(axes().back(), time)); }
+  double read_seconds() const override { return steps_->read_seconds(); }
+
+  Mesh at(double time) override {
+    Mesh mesh = take(slicer_.slice(Hyperplane<D>::at(D - 1, time)));
+    if (const auto& world = steps_->info().world) transform(mesh, at_coordinate(*world, D - 1, time));
+    return mesh;
+  }
+
+  std::vector<double> events() override {
+    ProgressBar bar("track", quiet_);
+    TrackOptions tracking;
+    tracking.extraction = extraction_;
+    tracking.extraction.progress = bar.callback();
+    tracking.measure_features = false;
+    std::vector<double> times;
+    for (const TrackingEvent& event : take(track(*steps_, isovalue_, tracking)).events)
+      if (event.type != EventType::open_start && event.type != EventType::open_end)
+        times.push_back(event.time);
+    return times;
+  }
+
+ private:
+  FieldSliceOptions options_of(const ExtractOptions& extraction, bool normals) const {
+    FieldSliceOptions options;
+    static_cast<ExtractOptions&>(options) = extraction;
+    options.with_normals = normals;
+    for (const NamedSteps& other : others_) options.others.push_back({other.name, other.steps.get()});
+    return options;
+  }
+
+  std::unique_ptr<SelectedSteps> steps_;
+  std::vector<NamedSteps> others_;
+  double isovalue_;
+  ExtractOptions extraction_;
+  FieldSlicer<D> slicer_;
+  bool quiet_;
+};
+
+template <int D>
+class MeshFrames final : public Frames {
+ public:
+  MeshFrames(Mesh&& mesh, Precision precision, double read_seconds)
+      : mesh_(std::move(mesh)), index_(mesh_), axes_(axes_of(mesh_)), precision_(precision),
+        read_seconds_(read_seconds) {
+    if (knows_times()) return;
+    times_ = {HUGE_VAL, -HUGE_VAL};
+    for (std::size_t vertex = 0; vertex < mesh_.vertex_count(); ++vertex) {
+      const double time = mesh_.positions[vertex * D + D - 1];
+      times_ = {std::min(times_.first, time), std::max(times_.second, time)};
+    }
+  }
+
+  const std::vector<Axis>& axes() const override { return axes_; }
+  std::pair<double, double> times() const override { return knows_times() ? ends_of(axes_.back()) : times_; }
+  void check(double time) const override {
+    if (knows_times())
+      (void)take(samples_around(axes_.back(), time));
+    else if (!(times_.first <= time && time <= times_.second))
+      fail_usage(text("time ", time, " is outside the surface, which is there from ", times_.first, " to ",
+                      times_.second));
+  }
+  double read_seconds() const override { return read_seconds_; }
+  Mesh at(double time) override {
+    return take(index_.slice(mesh_, Hyperplane<D>::at(D - 1, time), {.precision = precision_}));
+  }
+  std::vector<double> events() override {
+    fail_usage("--events: the input is a mesh; finding events needs the field");
+  }
+
+ private:
+  bool knows_times() const { return axes_.back().count > 0 && std::isfinite(axes_.back().coordinate(0)); }
+
+  SimplexMesh<D> mesh_;
+  SliceIndex<D> index_;
+  std::vector<Axis> axes_;
+  Precision precision_;
+  double read_seconds_;
+  std::pair<double, double> times_; // where the mesh does not know its grid
+};
+
+} // namespace
+
+std::unique_ptr<Frames> frames_of_field(const FieldOptions& input, double isovalue,
+                                        const SurfaceOptions& surface, const PointDataOptions& data,
+                                        bool normals, const MachineOptions& machine,
+                                        const PrintOptions& printing) {
+  (void)surface.extract_options(machine); // wrong ones are told before anything is read
+  auto steps = std::make_unique<SelectedSteps>(input.open(machine), input);
+  check_dimension(steps->info().dimension(), lowest_animated, highest_dimension, "the field");
+  check_axes(steps->info());
+  auto others = data.open(input, machine);
+  const int dimension = steps->info().dimension();
+  return with_dimension<lowest_animated>(dimension, "the field", [&](auto D) -> std::unique_ptr<Frames> {
+    return std::make_unique<FieldFrames<decltype(D)::value>>(std::move(steps), std::move(others), isovalue,
+                                                             surface.extract_options(machine), normals,
+                                                             printing.quiet);
+  });
+}
+
+std::unique_ptr<Frames> frames_of_mesh(const std::string& path, const SurfaceOptions& surface,
+                                       const MachineOptions& machine, const PrintOptions& printing) {
+  const Precision precision = surface.extract_options(machine).precision;
+  const Stopwatch reading;
+  Mesh mesh = mesh_in(path, printing.quiet);
+  const double read_seconds = reading.seconds();
+  if (mesh.simplex_dimension != mesh.dimension - 1)
+    fail_usage(
+        text(path, ": it holds ", simplex_noun(mesh.simplex_dimension), " in ", mesh.dimension,
+             " dimensions; frames are cut from a surface through time, of tetrahedra in 4 dimensions or ",
+             "triangles in 3"));
+  return with_dimension<lowest_animated>(mesh.dimension, "the mesh", [&](auto D) -> std::unique_ptr<Frames> {
+    return std::make_unique<MeshFrames<decltype(D)::value>>(std::move(mesh), precision, read_seconds);
+  });
+}
+
+} // namespace hyperiso::cli

@@ -1,0 +1,64 @@
+#include "mesh/normals.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace hyperiso {
+namespace {
+
+using Vector = std::array<double, 3>;
+
+std::vector<Vector> attribute_normals(const Mesh& mesh) {
+  std::vector<Vector> normals;
+  for (const Attribute& attribute : mesh.attributes) {
+    if (attribute.name != "normal" || attribute.location != Attribute::Location::vertex ||
+        attribute.components != 3)
+      continue;
+    normals.resize(mesh.vertex_count());
+    std::visit(
+        [&](const auto& values) {
+          for (std::size_t k = 0; k < values.size(); ++k)
+            normals[k / 3][k % 3] = static_cast<double>(values[k]);
+        },
+        attribute.values);
+  }
+  return normals;
+}
+
+std::vector<Vector> area_weighted_normals(const Mesh& mesh) {
+  std::vector<Vector> normals(mesh.vertex_count());
+  for (std::size_t triangle = 0; triangle < mesh.simplex_count(); ++triangle) {
+    std::array<Vector, 3> corners;
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      for (std::size_t k = 0; k < 3; ++k)
+        corners[corner][k] = mesh.positions[mesh.simplices[triangle * 3 + corner] * 3 + k];
+    Vector u, v;
+    for (std::size_t k = 0; k < 3; ++k) {
+      u[k] = corners[1][k] - corners[0][k];
+      v[k] = corners[2][k] - corners[0][k];
+    }
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      for (std::size_t k = 0; k < 3; ++k)
+        normals[mesh.simplices[triangle * 3 + corner]][k] +=
+            u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+  }
+  return normals;
+}
+
+} // namespace
+
+std::vector<float> vertex_normals(const Mesh& mesh) {
+  std::vector<Vector> normals = attribute_normals(mesh);
+  if (normals.empty()) normals = area_weighted_normals(mesh);
+  std::vector<float> result;
+  result.reserve(3 * normals.size());
+  for (const Vector& normal : normals) {
+    const double length = std::hypot(normal[0], normal[1], normal[2]);
+    const bool known = length > 0 && std::isfinite(length);
+    for (std::size_t k = 0; k < 3; ++k)
+      result.push_back(known ? static_cast<float>(normal[k] / length) : k == 2 ? 1.0f : 0.0f);
+  }
+  return result;
+}
+
+} // namespace hyperiso
