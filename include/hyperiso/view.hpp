@@ -88,7 +88,7 @@ struct PageSurface {
 /// `tracking`: of the same field at the same isovalue; the page says so where another is chosen.
 ///
 /// Dimensions: 3 and 4. Bytes in the file, beside 0.8 MB for the viewer: for each tetrahedron of the surface
-/// 0.2 to 0.3 of a band, for each sample up to 2.7 of all, less for smooth fields.
+/// 0.2 to 0.3 of a band; for each sample up to 2.7 of all, 0.4 of smooth fields.
 ///
 /// Errors: those of `write_page`; invalid_isovalue; invalid_argument for Method::barycentric;
 /// unsupported_dimension.

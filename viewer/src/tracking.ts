@@ -89,6 +89,7 @@ export function buildTracking(app: App): void {
   host.replaceChildren(drawing, key, stale);
   const showStale = (): void => {
     stale.hidden = app.isOwnSurface;
+    key.style.visibility = app.isOwnSurface ? "" : "hidden";
     drawing.classList.toggle("dimmed", !app.isOwnSurface);
     drawing.toggleAttribute("inert", !app.isOwnSurface);
   };
