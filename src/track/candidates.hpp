@@ -47,12 +47,15 @@ class CandidateSearch {
       next[line] = crossings_->first(number);
     }
     if (!any) return;
+    for (unsigned line = 0; line < lines; ++line) {
+      below_[line] = crossings_->lower().row(row_of_line(row, line));
+      above_[line] = crossings_->upper().row(row_of_line(row, line));
+    }
     const auto cells = static_cast<std::size_t>(crossings_->dims()[0] - 1);
     const std::size_t words = crossings_->lower().words();
     const auto changes = [&](std::size_t word) {
       std::uint64_t changed = 0;
-      for (unsigned line = 0; line < lines; ++line)
-        changed |= crossings_->changes(row_of_line(row, line), word);
+      for (unsigned line = 0; line < lines; ++line) changed |= below_[line][word] ^ above_[line][word];
       return changed;
     };
     std::uint64_t here = changes(0);
@@ -61,20 +64,19 @@ class CandidateSearch {
       std::uint64_t touched = here | here >> 1 | behind << 63;
       for (; touched != 0; touched &= touched - 1) {
         const std::size_t x = 64 * word + static_cast<std::size_t>(std::countr_zero(touched));
-        if (x < cells) pass_cell(row, x, next);
+        if (x < cells) pass_cell(x, next);
       }
       here = behind;
     }
   }
 
-  void pass_cell(std::size_t row, std::size_t x, std::array<std::size_t, lines>& next) {
+  void pass_cell(std::size_t x, std::array<std::size_t, lines>& next) {
     std::uint32_t code = 0;
     unsigned crossed = 0;
     std::array<std::size_t, columns> number{}; // of the crossing at each corner
     for (unsigned line = 0; line < lines; ++line) {
-      const std::size_t samples = row_of_line(row, line);
-      const unsigned below = pair_at(crossings_->lower().row(samples), x),
-                     above = pair_at(crossings_->upper().row(samples), x), changed = below ^ above;
+      const unsigned below = pair_at(below_[line], x), above = pair_at(above_[line], x),
+                     changed = below ^ above;
       code |= (below & 1) << line | (above & 1) << (line + lines);
       code |= (below >> 1) << (line + 2 * lines) | (above >> 1) << (line + 3 * lines);
       crossed |= changed << (2 * line);
@@ -122,6 +124,7 @@ class CandidateSearch {
   CellLinks<D> links_;
   PoleTable pole_table_;
   const Crossings<D>* crossings_ = nullptr;
+  std::array<const std::uint64_t*, lines> below_{}, above_{}; // masks beside a row of cells, at both steps
   std::vector<std::uint8_t> poles_; // of each crossing that are earlier, or not_simple
 };
 

@@ -1,10 +1,12 @@
 // Tracking from seeds: the families of a few components, by following the surface from slab to slab in both
-// directions of time until no step has a vertex that only one of its slabs knows.
+// directions of time until no step has a vertex that only one of its slabs knows: cell by cell where that is
+// enough (family_trace.hpp), else with the mesh of each slab.
 
 #include "core/text.hpp"
 #include "hyperiso/seeds.hpp"
 #include "hyperiso/track.hpp"
 #include "track/check_source.hpp"
+#include "track/family_trace.hpp"
 #include "track/level.hpp"
 #include "track/tracks.hpp"
 
@@ -43,8 +45,12 @@ class LocalRun {
       in_slab[D - 1] = 0;
       pending_[cell[D - 1]].cells.push_back(in_slab);
     }
-    if (const Status followed = follow(); !followed) return followed.error();
-    if (const Status swept = sweep(); !swept) return swept.error();
+    auto quick = run_cell_by_cell(cells);
+    if (!quick) return quick.error();
+    if (!*quick) {
+      if (const Status followed = follow(); !followed) return followed.error();
+      if (const Status swept = sweep(); !swept) return swept.error();
+    }
     assign_tracks(result_.graph);
     return std::move(result_);
   }
@@ -56,6 +62,50 @@ class LocalRun {
     std::optional<Slab<D>> slab;
     std::unordered_set<GridEdge> lower, upper; // edges within the steps, numbered as within a lower step
   };
+
+  // Where no sample is missing and none near the family makes ties. False, and nothing done, if not so.
+  Result<bool> run_cell_by_cell(const std::vector<std::vector<std::int64_t>>& cells) {
+    if (extraction_.method == Method::simplicial) return false;
+    FamilyTrace<T, D> trace(source_, isovalue_, extraction_);
+    for (const auto& cell : cells) {
+      for (std::size_t axis = 0; axis < D; ++axis)
+        if (cell[axis] < 0 || cell[axis] > result_.graph.axes[axis].count - 2) return false;
+      auto added = trace.add_cell(cell);
+      if (!added || !*added) return added;
+    }
+    auto followed = trace.follow();
+    if (!followed || !*followed) return followed;
+
+    const auto [begin, end] = trace.slabs();
+    std::map<std::int64_t, typename FamilyTrace<T, D>::Made> made;
+    for (std::int64_t number = begin; number < end; ++number) {
+      made.emplace(number, trace.make(number, time(number), time(number + 1)));
+      if (!made.at(number).sweep) return false;
+    }
+    // One that is empty before the family begins, and one after it ends.
+    const auto sweep_of = [&](std::int64_t number) {
+      const auto found = made.find(number);
+      return found != made.end() ? std::move(found->second.sweep)
+                                 : std::make_unique<Sweep<D>>(Slab<D>(), time(number), time(number + 1));
+    };
+    const auto nothing = std::make_shared<const StepPieces>(std::vector<GridEdge>(),
+                                                            std::vector<std::uint32_t>(), GridEdge{1}, D - 1);
+    const std::int64_t first = std::max<std::int64_t>(begin - 1, 0),
+                       last = std::min(end, result_.graph.steps - 2);
+    std::unique_ptr<Sweep<D>> lower;
+    for (std::int64_t number = first; number <= last; ++number) {
+      auto upper = sweep_of(number);
+      const auto pieces = made.contains(number) ? made.at(number).pieces : nothing;
+      if (lower || number == 0) Level<D>(lower.get(), upper.get(), pieces).resolve(time(number), builder_);
+      upper->run(builder_);
+      lower = std::move(upper);
+    }
+    if (last == result_.graph.steps - 2)
+      Level<D>(lower.get(), nullptr, made.contains(last) ? made.at(last).upper_pieces : nothing)
+          .resolve(time(last + 1), builder_);
+    result_.samples = trace.samples();
+    return true;
+  }
 
   double time(std::int64_t step) const { return result_.graph.axes.back().coordinate(step); }
   FieldView<const T, D> view(const SlabTrace& trace) const { return trace.steps.template view<T, D>(); }

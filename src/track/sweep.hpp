@@ -283,7 +283,7 @@ class Sweep {
     for (std::size_t piece = 0; piece < after.size(); ++piece) set_arc(after[piece], event.arcs_out[piece]);
   }
 
-  // One strand for each piece. What was not searched to its end keeps the labels it has, united.
+  // One strand for each piece. What was not searched to its end goes on with those before, united.
   std::vector<std::uint64_t> relabel(const std::vector<typename PieceSearch<C>::Piece>& pieces,
                                      const std::set<std::uint64_t>& before, double moment) {
     std::vector<std::uint64_t> after;
@@ -291,11 +291,11 @@ class Sweep {
       std::uint64_t strand = 0;
       if (piece.finished || before.empty()) {
         strand = strands_.add();
-      } else {
+        label(piece.simplices, moment, strand);
+      } else { // what it comes from leads to the strand
         for (const std::uint64_t other : before) strands_.unite(*before.begin(), other);
         strand = strands_.find(*before.begin());
       }
-      label(piece.simplices, moment, strand);
       after.push_back(strand);
     }
     return after;

@@ -80,9 +80,10 @@ class VolumePicture {
     if (track.start_type == "birth") add(track.start_time, low_);
     for (const Feature* row : rows_[number]) add(row->time, row->volume);
     if (track.end_type == "death") add(track.end_time, low_);
-    if (rows_[number].size() == 1) path += "h0"; // a dot at least
-    return text("<path d=\"", path, "\" fill=\"none\" stroke=\"", colour_of(id),
-                "\" stroke-width=\"2\" stroke-linejoin=\"round\" stroke-linecap=\"round\">",
+    const bool is_dot = rows_[number].size() == 1;
+    if (is_dot) path += "h0";
+    return text("<path d=\"", path, "\" fill=\"none\" stroke=\"", colour_of(id), "\" stroke-width=\"",
+                is_dot ? 4 : 2, "\" stroke-linejoin=\"round\" stroke-linecap=\"round\">",
                 tooltip(text("track ", id)), "</path>\n");
   }
 
