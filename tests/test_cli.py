@@ -1024,6 +1024,7 @@ class World(Case):
         text = (self.folder / "meet.html").read_text()
         page = json.loads(re.search(r'id="hyperiso-metadata">(.*?)</script>', text)[1])
         merge, = [event for event in page["tracking"]["events"] if event["type"] == "merge"]
+        self.assertEqual([axis["samples"] for axis in page["axes"]], [0, 0, 9, 6])  # x and y are mixed
         for found, expected in zip(merge["position"], (100 - 2 * 4, 200 + 2 * 8, 300 + 2 * 4)):
             self.assertAlmostEqual(found, expected, delta=1.5)
 

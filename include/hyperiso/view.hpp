@@ -27,8 +27,8 @@ struct PageOptions {
   /// Tracks and events to show under the scene, and to colour by; of the field that the mesh is the surface
   /// of.
   const TrackingGraph* tracking = nullptr;
-  /// Grid to world coordinates, where the mesh has been moved so: places of events, which are in grid
-  /// coordinates, are moved along. `write_field_page` takes that of its field.
+  /// Grid to world coordinates, where the mesh has been moved so: `axes` are then those of the grid, and they
+  /// and what `tracking` says of times and places are moved along. `write_field_page` takes that of its field.
   std::optional<Affine> world;
   std::uint64_t size_limit = UINT64_MAX; ///< bytes that the page may have
   Progress progress = {};

@@ -159,10 +159,7 @@ void read_field(const View& options, std::uint64_t size, Content& content) {
   content.page.has_time = field.info.has_time;
   content.page.field_name = field.info.name;
   content.page.world = field.info.world;
-  if (!field.info.world) return;
-  transform(*content.mesh, *field.info.world);
-  for (Axis& axis : content.page.axes) axis.count = 0; // the mesh is no longer on the grid
-  if (field.info.has_time) content.page.axes.back() = field.info.axes.back();
+  if (field.info.world) transform(*content.mesh, *field.info.world);
 }
 
 void read_surface(const View& options, Content& content) {

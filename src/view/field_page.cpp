@@ -9,32 +9,12 @@
 #include "view/track_labels.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <new>
 
 namespace hyperiso {
 namespace {
 
 constexpr std::size_t block_samples = std::size_t{1} << 21;
-
-// The box around the grid in world coordinates: it holds the surfaces of all isovalues.
-Ranges ranges_of_world(const FieldInfo& info, Ranges grid) {
-  const Affine& world = *info.world;
-  const std::size_t D = info.axes.size();
-  Ranges ranges = grid;
-  for (std::size_t row = 0; row < D; ++row) {
-    ranges.axes[row].count = 0;
-    ranges.axes[row].coordinates.clear();
-    ranges.minimum[row] = ranges.maximum[row] = world.offset[row];
-    for (std::size_t column = 0; column < D; ++column) {
-      const double low = world.linear[row * D + column] * grid.minimum[column],
-                   high = world.linear[row * D + column] * grid.maximum[column];
-      ranges.minimum[row] += std::min(low, high);
-      ranges.maximum[row] += std::max(low, high);
-    }
-  }
-  return ranges;
-}
 
 std::vector<std::int64_t> layers_of_blocks(const SampleLayers& layers) {
   const auto most =
@@ -91,11 +71,8 @@ Result<PageSurface> write_field(const Field& field, const FieldPageOptions& opti
   std::vector<EncodedAttribute> attributes;
   if (options.tracking)
     attributes.push_back(encode_labels("track", tracks_of_vertices(mesh, *options.tracking)));
-  Ranges ranges = ranges_of(mesh, options);
-  if (options.world) {
-    ranges = ranges_of_world(field.info, std::move(ranges));
-    transform(mesh, *options.world);
-  }
+  const Ranges ranges = ranges_of(mesh, options);
+  if (options.world) transform(mesh, *options.world);
   const Payload payload(mesh, ranges.quantisers(), options.has_time && D == 4);
 
   Json metadata = metadata_of(D, D - 1, options, ranges, payload.quantisers(), attributes);

@@ -8,28 +8,28 @@
 namespace hyperiso {
 namespace {
 
-// The numbers of a vertex attribute; empty if there is none of the name.
-std::vector<double> numbers_of(const Mesh& mesh, std::string_view name) {
+// The numbers of a vertex attribute; nothing if there is none of the name.
+std::optional<std::vector<double>> numbers_of(const Mesh& mesh, std::string_view name) {
   for (const Attribute& attribute : mesh.attributes)
     if (attribute.name == name && attribute.location == Attribute::Location::vertex &&
         attribute.components == 1)
-      return std::visit([](const auto& values) { return std::vector<double>(values.begin(), values.end()); },
-                        attribute.values);
-  return {};
+      return std::visit(
+          [](const auto& values) { return std::optional(std::vector<double>(values.begin(), values.end())); },
+          attribute.values);
+  return std::nullopt;
 }
 
 } // namespace
 
 std::optional<Mesh> lifted(const Mesh& volume) {
-  const std::vector<double> isovalues = numbers_of(volume, "isovalue");
+  const auto isovalues = numbers_of(volume, "isovalue");
   const int D = volume.dimension;
-  if (volume.simplex_dimension != D || D < 2 || D > 3 || isovalues.size() != volume.vertex_count())
-    return std::nullopt;
+  if (volume.simplex_dimension != D || D < 2 || D > 3 || !isovalues) return std::nullopt;
   Mesh surface(D + 1, D);
   surface.positions.reset(volume.vertex_count() * static_cast<std::size_t>(D + 1), volume.positions.wide());
   for (std::size_t vertex = 0, from = 0, to = 0; vertex < volume.vertex_count(); ++vertex) {
     for (int axis = 0; axis < D; ++axis) surface.positions.set(to++, volume.positions[from++]);
-    surface.positions.set(to++, isovalues[vertex]);
+    surface.positions.set(to++, (*isovalues)[vertex]);
   }
   surface.simplices = volume.simplices;
   // Normals point from + to -, so towards larger isovalues. Beside a simplex that is oriented positively,
@@ -45,7 +45,8 @@ std::optional<Mesh> lifted(const Mesh& volume) {
 }
 
 Axis isovalue_axis(const Mesh& volume) {
-  const std::vector<double> isovalues = numbers_of(volume, "isovalue"), levels = numbers_of(volume, "level");
+  const auto isovalues = numbers_of(volume, "isovalue").value_or(std::vector<double>{}),
+             levels = numbers_of(volume, "level").value_or(std::vector<double>{});
   std::map<double, double> known;
   for (std::size_t vertex = 0; vertex < std::min(levels.size(), isovalues.size()); ++vertex)
     if (levels[vertex] == std::round(levels[vertex])) known.emplace(levels[vertex], isovalues[vertex]);

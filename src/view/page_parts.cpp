@@ -4,6 +4,7 @@
 #include "hyperiso/track_files.hpp"
 #include "io/encoding.hpp"
 #include "view/shell.hpp"
+#include "view/world_axis.hpp"
 
 #include <zlib.h>
 
@@ -103,6 +104,26 @@ std::vector<double> moved(const std::vector<double>& position, double time, cons
   return image;
 }
 
+// Times and places from grid to world coordinates; times where they depend on nothing else.
+void move_tracking(const Affine& world, Json& tracking) {
+  const std::size_t time = world.offset.size() - 1;
+  const bool alone = stands_alone(world, time);
+  const double scale = world.linear.back(), offset = world.offset.back();
+  const auto move_time = [&](Json& number) {
+    if (alone) number = offset + scale * number.get<double>();
+  };
+  for (Json& event : tracking["events"]) {
+    event["position"] =
+        moved(event["position"].get<std::vector<double>>(), event["time"].get<double>(), world);
+    move_time(event["time"]);
+  }
+  for (Json& track : tracking["tracks"]) {
+    move_time(track["start_time"]);
+    move_time(track["end_time"]);
+    for (Json& volume : track["volumes"]) move_time(volume[0]);
+  }
+}
+
 // The summary that files hold too, and of each track its volume at the steps.
 Json tracking_json(const TrackingGraph& graph, const std::optional<Affine>& world) {
   Json json = Json::parse(tracking_summary_json(graph));
@@ -111,10 +132,7 @@ Json tracking_json(const TrackingGraph& graph, const std::optional<Affine>& worl
     if (feature.track >= 0)
       json["tracks"][static_cast<std::size_t>(feature.track)]["volumes"].push_back(
           {feature.time, feature.volume});
-  if (world)
-    for (Json& event : json["events"])
-      event["position"] =
-          moved(event["position"].get<std::vector<double>>(), event["time"].get<double>(), *world);
+  if (world) move_tracking(*world, json);
   return json;
 }
 
@@ -132,6 +150,26 @@ std::vector<Quantiser> Ranges::quantisers() const {
     result.push_back(quantiser_of(axes[k], minimum[k], maximum[k]));
   return result;
 }
+
+namespace {
+
+Ranges in_world(Ranges grid, const Affine& world) {
+  const std::size_t D = grid.axes.size();
+  Ranges ranges = grid;
+  for (std::size_t row = 0; row < D; ++row) {
+    ranges.axes[row] = world_axis(grid.axes[row], world, row);
+    ranges.minimum[row] = ranges.maximum[row] = world.offset[row];
+    for (std::size_t column = 0; column < D; ++column) {
+      const double low = world.linear[row * D + column] * grid.minimum[column],
+                   high = world.linear[row * D + column] * grid.maximum[column];
+      ranges.minimum[row] += std::min(low, high);
+      ranges.maximum[row] += std::max(low, high);
+    }
+  }
+  return ranges;
+}
+
+} // namespace
 
 Ranges ranges_of(const Mesh& mesh, const PageOptions& options) {
   const auto dimension = static_cast<std::size_t>(mesh.dimension);
@@ -156,7 +194,7 @@ Ranges ranges_of(const Mesh& mesh, const PageOptions& options) {
       ranges.maximum[k] = 1;
     }
   }
-  return ranges;
+  return options.world ? in_world(std::move(ranges), *options.world) : ranges;
 }
 
 Json metadata_of(int dimension, int simplex_dimension, const PageOptions& options, const Ranges& ranges,

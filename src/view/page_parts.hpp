@@ -32,7 +32,8 @@ struct Ranges {
   std::vector<Quantiser> quantisers() const;
 };
 
-// Completes the axes of `options`: an axis without samples gets the range of the mesh.
+// Completes the axes of `options`: an axis without samples gets the range of the mesh; with a world
+// transform, all get those of the box around the moved grid, whatever surface it holds.
 Ranges ranges_of(const Mesh& mesh, const PageOptions& options);
 
 // Everything the page is told but for where its data stands.

@@ -780,6 +780,32 @@ describe("pages that extract", { skip: fieldPages ? false : "built without the e
     assert.deepEqual(found[2], found[0]);
   });
 
+  test("in world coordinates too, with times and places of events", async () => {
+    const found = [];
+    for (const kind of ["mesh", "band", "field"]) {
+      const { page, problems, close } = await open(`turned_${kind}.html`);
+      found.push([await arrays(page), await page.evaluate(() => hyperiso.space.axes), await page.evaluate(() => hyperiso.metadata.tracking)]);
+      assert.match(await page.textContent("#position"), /^t = 7\.0+ sstep 0 of 20$/);
+      await page.click('[data-event="merge"]');
+      near(await position(page), 7 + 0.5 * 0.595, 0.01);
+      // It is marked where the blobs meet: on the surface.
+      const away = await page.evaluate(() => {
+        const { x, y, z } = hyperiso.view.marker.point, { positions: p, count } = hyperiso.slice();
+        let least = Infinity;
+        for (let at = 0; at < 9 * count; at += 3) least = Math.min(least, Math.hypot(p[at] - x, p[at + 1] - y, p[at + 2] - z));
+        return least;
+      });
+      assert.ok(away < 0.1, `${away} away`);
+      await page.keyboard.press("Home");
+      const area = await page.evaluate(() => probe.area());
+      assert.ok(area > 0.1, String(area));
+      assert.deepEqual(problems, []);
+      await close();
+    }
+    assert.deepEqual(found[1], found[0]);
+    assert.deepEqual(found[2], found[0]);
+  });
+
   test("of rounded samples as well, but for rounding", async () => {
     const found = [];
     for (const kind of ["mesh", "band", "field"]) {

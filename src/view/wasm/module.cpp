@@ -5,6 +5,7 @@
 #include "hyperiso/mesh.hpp"
 #include "view/payload.hpp"
 #include "view/surface_of_codes.hpp"
+#include "view/world_axis.hpp"
 
 #include <memory>
 #include <optional>
@@ -49,7 +50,8 @@ bool extract_here(double isovalue) {
   std::vector<Quantiser> quantisers;
   for (std::size_t k = 0; k < D; ++k)
     quantisers.push_back(
-        quantiser_of(state.world ? Axis{} : state.axes[k], state.minimum[k], state.maximum[k]));
+        quantiser_of(state.world ? world_axis(state.axes[k], *state.world, k) : state.axes[k],
+                     state.minimum[k], state.maximum[k]));
   const Payload payload(mesh, std::move(quantisers), state.time_slabs);
   state.levels.resize(4 * payload.vertex_count());
   state.simplices.resize(4 * payload.simplex_count());
