@@ -7,6 +7,7 @@
 #include "hand_made_meshes.hpp"
 #include "hyperiso/io.hpp"
 #include "hyperiso/measure.hpp"
+#include "hyperiso/polylines.hpp"
 #include "hyperiso/sample.hpp"
 #include "hyperiso/slice.hpp"
 
@@ -88,6 +89,16 @@ void write_moving_ball(Writer& writer) {
   writer.write("slice", cut, {"vtu", "vtp", "ply", "stl", "obj", "off"});
 }
 
+// Isolines of a field with ties: closed and open ones.
+void write_isolines(Writer& writer) {
+  const Field field = need(make_sample("noise", {.dims = {24, 18}}));
+  const auto surface = need(extract(field.view<float, 2>(), 0.5));
+  Json lines = Json::array();
+  for (const Polyline& line : need(polylines(surface)))
+    lines.push_back({{"vertices", line.vertices}, {"closed", line.closed}});
+  writer.write("isolines", surface, {"vtp", "svg", "geojson"}, {{"lines", lines}});
+}
+
 void write_all(const std::filesystem::path& folder) {
   Writer writer(folder);
   for (const bool f64 : {false, true}) {
@@ -115,6 +126,7 @@ void write_all(const std::filesystem::path& folder) {
   add_edges<4>(with_edges);
   writer.write("with_edges", with_edges, {"vtu"});
   write_moving_ball(writer);
+  write_isolines(writer);
   writer.finish();
   need(write_series({{0.1, "slice.vtp"}, {1.0 / 3, "triangles_r3_f32.vtp"}}, folder / "series & <more>.pvd"));
 }

@@ -373,6 +373,45 @@ class FlatAxes(Case):
         self.assertGreater(step["simplices"], 0)
 
 
+class Seeds(Case):
+    def extract(self, *arguments):
+        return self.ok("extract", "blobs.nrrd", "--iso", "0.5", "--json", *arguments).json()
+
+    def test_a_seed_or_a_pair_gives_one_component(self):
+        self.sample("gaussians", "21,21,21,9", "blobs.nrrd")
+        whole = self.extract("--steps", "0:1", "--measure", "-o", "whole.obj")
+        self.assertEqual(whole["measure"]["components"], 2)
+        self.assertNotIn("samples_visited", whole)
+        lines = (self.folder / "whole.obj").read_text().splitlines()
+        point = ",".join(next(line for line in lines if line.startswith("v ")).split()[1:])
+        one = self.extract("--steps", "0:1", "--measure", "--seed", point)
+        self.assertEqual([one["measure"]["components"], one["measure"]["closed"]], [1, True])
+        self.assertLess(one["simplices"], whole["simplices"])
+        self.assertLess(one["samples_visited"], 21 ** 3 / 2)
+        self.assertGreaterEqual(one["cells_visited"], one["active_cells"])
+        through_time = self.extract("--seed", point + ",0", "--measure", "-o", "traced.vtu")
+        self.assertEqual(through_time["measure"]["bad_facets"], 0)
+
+    def test_a_pair_finds_the_crossing_between(self):
+        values = [0.0] * 63
+        values[2 * 9 + 2] = values[2 * 9 + 7] = 1.0  # two samples inside
+        (self.folder / "two.raw").write_bytes(struct.pack("<63f", *values))
+        raw = ["two.raw", "--dims", "9,7", "--type", "f32", "--iso", "0.5", "--json"]
+        self.assertEqual(self.ok("extract", *raw).json()["simplices"], 8)
+        for seeds in [["0,0:2,2"], ["7.2,2:5,5"], ["0,0:2,2", "1,2"]]:
+            options = [word for seed in seeds for word in ["--seed", seed]]
+            self.assertEqual(self.ok("extract", *options, *raw).json()["simplices"], 4)
+        self.assertEqual(self.ok("extract", *raw, "--seed", "2,1", "--seed", "7,1").json()["simplices"], 8)
+        self.assert_refused(2, "extract", *raw, "--seed", "0,0:5,5")
+        self.assert_refused(2, "extract", *raw, "--seed", "0,0:2,2:5,5")
+
+    def test_seeds_that_mean_nothing(self):
+        self.sample("ball", "9,9,9,5", "blobs.nrrd")
+        for bad in ["0,0,0", "0,0,0,0,0", "0,0,0,99", "a,0,0,0", "0,0,0,0:0,0,0,0:0,0,0,0", "", "-1,-1,-1,0",
+                    "0,0,0,0.5:0,0,0,0.5"]:
+            self.assert_refused(2, "extract", "blobs.nrrd", "--iso", "0.5", "--seed", bad)
+
+
 class Interval(Case):
     def interval(self, *arguments):
         return self.ok("interval", *arguments, "--json", "--measure").json()
@@ -400,6 +439,16 @@ class Interval(Case):
             self.assertEqual(cut[key], step[key])
         self.assertEqual(cut["measure"]["euler_characteristic"], step["measure"]["euler_characteristic"])
         self.assertAlmostEqual(cut["measure"]["content"], step["content"], 12)
+        for time in ["0", "0.1", "0.5", "1"]:
+            where = ["--time", time, "--measure", "--json"]
+            from_mesh = self.ok("slice", "moving.vtu", *where).json()
+            from_field = self.ok("slice", "moving.nrrd", "--range", "0.3:0.7", *where).json()
+            self.assertEqual(from_field["range"], [0.3, 0.7])
+            for key in ["vertices", "simplices"]:
+                self.assertEqual(from_field[key], from_mesh[key])
+            self.assertAlmostEqual(from_field["measure"]["content"], from_mesh["measure"]["content"], 6)
+        self.assert_refused(2, "slice", "moving.nrrd", "--range", "0.3:0.7", "--iso", "0.5", "--time", "0.5")
+        self.assert_refused(2, "slice", "moving.vtu", "--range", "0.3:0.7", "--time", "0.5")
         between = self.ok("slice", "moving.vtu", "--time", "0.1", "--measure", "--json").json()
         self.assertEqual(between["measure"]["bad_facets"], 0)
         self.assert_refused(2, "interval", "moving.nrrd", "--range", "0.3:0.7", "-o", "moving.ply")

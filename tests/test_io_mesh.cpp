@@ -113,6 +113,36 @@ TEST(Vtp, every_dimension_comes_back_to_the_bit) {
   }
 }
 
+// Segments come back as the lines they were joined to, one after the other.
+TEST(Vtp, segments_are_joined_to_lines) {
+  const TemporaryFolder folder;
+  Mesh mesh = random_mesh({2, 1, true, 7, 6}); // 4-3-0 open, 1-2-5-1 closed, 6 by itself
+  mesh.attributes.resize(2);
+  const std::array<std::uint64_t, 10> corners{3, 0, 5, 1, 4, 3, 1, 2, 2, 5};
+  mesh.simplices.reset(corners.size(), false);
+  for (std::size_t i = 0; i < corners.size(); ++i) mesh.simplices.set(i, corners[i]);
+  const Mesh read = read_back(mesh, folder / "a.vtp");
+  EXPECT_NE(content_of(folder / "a.vtp").find("NumberOfLines=\"2\""), std::string::npos);
+  const std::array<std::uint64_t, 10> joined{1, 2, 2, 5, 5, 1, 4, 3, 3, 0};
+  for (std::size_t i = 0; i < joined.size(); ++i) mesh.simplices.set(i, joined[i]);
+  expect_equal(read, mesh);
+  expect_equal_attributes(read, mesh);
+}
+
+TEST(WriteMesh, lines_that_are_none_and_places_that_are_nowhere) {
+  const TemporaryFolder folder;
+  Mesh branching = random_mesh({2, 1, false, 4, 3});
+  for (std::size_t i = 0; i < 6; ++i) branching.simplices.set(i, i % 2 == 0 ? 0 : 1 + i / 2);
+  Mesh far = random_mesh({2, 1, false, 3, 1});
+  far.positions.set(4, HUGE_VAL);
+  for (const char* name : {"a.svg", "a.geojson"}) {
+    expect_error(write_mesh(branching, folder / name), Code::invalid_argument, "two segments");
+    expect_error(write_mesh(far, folder / name), Code::invalid_argument, "vertex 2 is at inf");
+    expect_error(write_mesh(random_mesh({3, 1}), folder / name), Code::file_unsupported, "vtu, vtp, obj");
+    EXPECT_TRUE(write_mesh(random_mesh({2, 1, false, 0, 0}), folder / name));
+  }
+}
+
 TEST(Vtk, mesh_without_vertices) {
   const TemporaryFolder folder;
   for (MeshKind kind : vtk_kinds)

@@ -122,8 +122,56 @@ def check_vtu(mesh, path, checks):
         check_contour_in_time(mesh, grid, checks)
 
 
+def points_of_lines(mesh):
+    """The points of each line, the first one again at the end of closed ones."""
+    positions = numpy.array(mesh["positions"], FLOAT[mesh["f64"]]).reshape(-1, 2)
+    return [positions[line["vertices"] + (line["vertices"][:1] if line["closed"] else [])] for line in mesh["lines"]]
+
+
+def check_vtp_lines(mesh, data, what, checks):
+    points, lines = vtk_points(data)[:, :2], points_of_lines(mesh)
+    checks.equal(data.GetNumberOfLines(), len(lines), f"{what}: lines")
+    for i, line in enumerate(lines):
+        ids = data.GetCell(i).GetPointIds()
+        checks.equal([points[ids.GetId(k)] for k in range(ids.GetNumberOfIds())], line, f"{what}: line {i}")
+
+
+def check_svg(mesh, path, checks):
+    """A path for each line, in order: as far as hundredths of pixels tell, an affine image of it."""
+    svg = "{http://www.w3.org/2000/svg}"
+    root = xml.etree.ElementTree.parse(path).getroot()
+    paths = root.find(f"{svg}g[@id='isolines']").findall(f"{svg}path")
+    checks.equal(len(paths), len(mesh["lines"]), f"{path.name}: lines")
+    drawn, expected = [], []
+    for shape, line, points in zip(paths, mesh["lines"], points_of_lines(mesh)):
+        words = shape.get("d")
+        checks.equal(words.endswith("Z"), line["closed"], f"{path.name}: closed")
+        drawn += [[float(x) for x in word.split()] for word in words.strip("MZ").split("L")]
+        expected += list(points[:len(line["vertices"])])
+    drawn, expected = numpy.array(drawn), numpy.array(expected)
+    checks.equal(drawn.shape, expected.shape, f"{path.name}: points")
+    for axis, rising in [(0, True), (1, False)]:
+        (slope, offset), *_ = numpy.polyfit(expected[:, axis], drawn[:, axis], 1, full=True)
+        checks.equal(slope > 0, rising, f"{path.name}: y points upwards")
+        checks.close(abs(slope * expected[:, axis] + offset - drawn[:, axis]).max(), 0, 0.011, f"{path.name}: places")
+        checks.equal((drawn[:, axis] >= 0).all(), True, f"{path.name}: inside the picture")
+
+
+def check_geojson(mesh, path, checks):
+    def refuse(word):
+        raise ValueError(f"{word} in {path.name}")
+    features = json.loads(path.read_text(), parse_constant=refuse)["features"]
+    checks.equal(len(features), len(mesh["lines"]), f"{path.name}: lines")
+    for feature, line, points in zip(features, mesh["lines"], points_of_lines(mesh)):
+        checks.equal(feature["geometry"]["type"], "LineString", f"{path.name}: type")
+        checks.equal(feature["properties"]["closed"], line["closed"], f"{path.name}: closed")
+        checks.equal(numpy.array(feature["geometry"]["coordinates"], points.dtype), points, f"{path.name}: points")
+
+
 def check_vtp(mesh, path, checks):
     data = read_with(vtk.vtkXMLPolyDataReader(), path)
+    if "lines" in mesh:
+        return check_vtp_lines(mesh, data, path.name, checks)
     check_xml(mesh, data, data.GetLines() if mesh["corners"] == 2 else data.GetPolys(), path.name, checks)
 
 
@@ -188,7 +236,8 @@ def check_off(mesh, path, checks):
     checks.equal(read.cells_dict["triangle"], simplices_of(mesh), f"{path.name}: cells")
 
 
-CHECKS = {".vtu": check_vtu, ".vtp": check_vtp, ".ply": check_ply, ".stl": check_stl, ".obj": check_obj, ".off": check_off}
+CHECKS = {".vtu": check_vtu, ".vtp": check_vtp, ".ply": check_ply, ".stl": check_stl, ".obj": check_obj, ".off": check_off,
+          ".svg": check_svg, ".geojson": check_geojson}
 
 
 def check_series(folder, checks):

@@ -120,8 +120,10 @@ class FileGroup {
 
 /// How to write a mesh.
 struct WriteMeshOptions {
-  std::string format = {}; ///< "vtu", "vtp", "ply", "stl", "obj", "off"; empty: by the suffix of the path
+  std::string format =
+      {}; ///< "vtu", "vtp", "ply", "stl", "obj", "off", "svg", "geojson"; empty: by the suffix of the path
   std::vector<std::string> axis_names = {}; ///< in R^4 the last one names the point data `t`
+  std::vector<std::string> axis_units = {}; ///< svg, geojson: told beside the names
   bool keep_edges = true; ///< vtu, vtp: store Mesh::edges and grid_axes, so that slices at steps stay exact
   FileGroup* group = nullptr; ///< none: the file takes its place at once
 };
@@ -131,7 +133,8 @@ struct WriteMeshOptions {
 ///
 /// | format   | simplices                          | of the mesh it keeps                                 |
 /// | vtu      | segments to 4-simplices            | all, to the bit                                      |
-/// | vtp      | segments, triangles; not in R^4    | all, to the bit                                      |
+/// | vtp      | segments, triangles; not in R^4    | all, to the bit; but segments without attributes of  |
+/// |          |                                    | their own are joined into lines (see polylines)      |
 /// | ply      | triangles; not in R^4              | positions as they are; attributes, one property a    |
 /// |          |                                    | component: NAME, or NAME_0, NAME_1, ...; 64-bit      |
 /// |          |                                    | integers as 32-bit ones or, where too large, double; |
@@ -142,6 +145,11 @@ struct WriteMeshOptions {
 /// | obj, off | triangles, obj also segments;      | positions, in as many digits as it takes             |
 /// |          | not in R^4                         |                                                      |
 ///
+/// | svg      | segments in R^2                    | a picture of the lines: axes, names and units; a     |
+/// |          |                                    | path for each line, closed or open                   |
+/// | geojson  | segments in R^2                    | a LineString for each line, in its own coordinates;  |
+/// |          |                                    | inside on its left, closed ones end where they begin |
+///
 /// Points of a mesh in R^2 get z = 0. Of a mesh in R^4 they are x, y, z; point data `t` is the fourth
 /// coordinate and `xyzt` has all four, so that a contour of `t` in ParaView is a slice in time. VTK has no
 /// cell for 4-simplices: they are poly vertices of five points, whole for `read_mesh`, points to others. vtu
@@ -151,7 +159,8 @@ struct WriteMeshOptions {
 /// Cost: a vtu of four million tetrahedra takes about a second on one core, the others less; memory: one
 /// block of an array (in a pipe: one array). Errors: file_unwritable; file_unsupported where the format
 /// cannot hold the mesh, saying which can; invalid_argument if the mesh contradicts itself or an attribute's
-/// name is taken; out_of_memory.
+/// name is taken, or, as svg and geojson, has branching lines or coordinates that are not finite;
+/// out_of_memory.
 Status write_mesh(const Mesh& mesh, const std::filesystem::path& path, const WriteMeshOptions& options = {});
 
 /// Whether `write_mesh` has a format for simplices of dimension `simplex_dimension` in R^dimension at that

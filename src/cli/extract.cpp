@@ -1,7 +1,11 @@
 #include "cli/command.hpp"
 #include "cli/field_mesh.hpp"
 #include "cli/manual.hpp"
+#include "cli/parse.hpp"
+#include "cli/seed.hpp"
+#include "hyperiso/seeds.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <memory>
 
@@ -10,23 +14,71 @@ namespace {
 
 struct Extract : FieldMeshOptions {
   std::string iso;
+  std::vector<std::string> seeds;
+};
+
+// What was looked at to trace a surface from its seeds.
+struct Visited {
+  std::uint64_t samples, cells;
 };
 
 // What is told about the surface of one isovalue.
 struct Surface {
   double isovalue;
   Outcome outcome;
+  std::optional<Visited> visited; // if there are seeds
 };
+
+template <int D>
+std::array<std::int64_t, D> index_of(const std::vector<std::int64_t>& indices) {
+  std::array<std::int64_t, D> index;
+  std::ranges::copy(indices, index.begin());
+  return index;
+}
+
+template <int D>
+Seeds<D> parse_seeds(const std::vector<std::string>& texts, const std::vector<Axis>& axes) {
+  Seeds<D> seeds;
+  for (const std::string& seed : texts) {
+    const std::vector<std::string> points = split(seed, ':');
+    if (points.size() > 2)
+      fail_usage(text("--seed: '", seed, "' is neither a point nor two with a : between"));
+    if (points.size() == 1)
+      seeds.cells.push_back(index_of<D>(cell_at(points[0], axes)));
+    else
+      seeds.pairs.emplace_back(index_of<D>(sample_at(points[0], axes)),
+                               index_of<D>(sample_at(points[1], axes)));
+  }
+  return seeds;
+}
+
+// The surface of a field that is known by its type and dimension: all of it, or what its seeds lead to.
+template <class T, int D>
+Result<SimplexMesh<D>> surface_of(const FieldView<const T, D>& view, double isovalue, const Extract& options,
+                                  const std::vector<Axis>& axes, const ExtractOptions& extraction,
+                                  std::optional<Visited>& visited) {
+  if (options.seeds.empty()) return extract(view, isovalue, extraction);
+  if constexpr (D <= highest_dimension) {
+    auto traced = extract_from_seeds(view, isovalue, parse_seeds<D>(options.seeds, axes), extraction);
+    if (!traced) return traced.error();
+    visited = {traced->samples, traced->cells};
+    return std::move(traced->mesh);
+  } else {
+    fail_usage(
+        text("--seed: surfaces are traced in up to ", highest_dimension, " dimensions; the field has ", D));
+  }
+}
 
 Surface make_surface(const Extract& options, const Field& field, const std::vector<NamedField>& others,
                      double isovalue, const std::string& path, FileGroup& files) {
   ExtractOptions extraction = options.surface.extract_options(options.machine);
   extraction.keep_edges = !path.empty() || options.data.from_field();
+  std::optional<Visited> visited;
   const Stopwatch extracting;
   Mesh mesh = make_mesh<highest_extracted>(
       "extract", field, options.printing.quiet, [&](const auto& view, const Progress& progress) {
         extraction.progress = progress;
-        auto surface = extract(view, isovalue, extraction);
+        auto surface = surface_of(view, isovalue, options, field.info.axes, extraction, visited);
         if (surface)
           take(add_point_data(*surface, field, isovalue, extraction.inside, others, options.data.normals));
         return surface;
@@ -34,13 +86,18 @@ Surface make_surface(const Extract& options, const Field& field, const std::vect
   options.data.colour(mesh);
   const double extract_seconds = extracting.seconds();
   if (mesh.simplex_count() == 0 && !options.printing.quiet) print_warning(why_empty(field, isovalue));
-  Surface surface{isovalue, finish(mesh, options, field.info, path, files)};
+  Surface surface{isovalue, finish(mesh, options, field.info, path, files), visited};
   surface.outcome.extract_seconds = extract_seconds;
   return surface;
 }
 
 Json json_of(const Surface& surface, const Extract& options, const FieldInfo& info) {
-  return json_of(surface.outcome, options, info, {{"isovalue", surface.isovalue}});
+  Json object = json_of(surface.outcome, options, info, {{"isovalue", surface.isovalue}});
+  if (surface.visited) {
+    object["samples_visited"] = surface.visited->samples;
+    object["cells_visited"] = surface.visited->cells;
+  }
+  return object;
 }
 
 std::string report_of(const Surface& surface, const Extract& options, const FieldInfo& info) {
@@ -48,6 +105,9 @@ std::string report_of(const Surface& surface, const Extract& options, const Fiel
   report.add("field", size_and_type(info));
   report.add("isovalue", fmt::format("{}, {}, inside {}", surface.isovalue, options.surface.method,
                                      options.surface.inside));
+  if (surface.visited)
+    report.add("visited", text(grouped(surface.visited->samples), " samples, ",
+                               grouped(surface.visited->cells), " cells"));
   add_outcome(report, surface.outcome);
   return report.text();
 }
@@ -95,6 +155,15 @@ Command extract_command(CLI::App& program) {
       ->required()
       ->group("Surface");
   options->surface.add_to(*app);
+  app->add_option(
+         "--seed", options->seeds,
+         "only the components of the surface that pass the grid cell around this point; or two points "
+         "with a colon between them, one inside and one outside: the component where the line from "
+         "one to the other crosses the surface. In coordinates of the axes, as --time of slice takes "
+         "them, not in numbers of samples; repeatable. Only samples beside the surface are looked at")
+      ->type_name("X,Y,...[:X,Y,...]")
+      ->allow_extra_args(false)
+      ->group("Surface");
   options->data.add_to(*app);
   options->output.add_to(*app,
                          "With several isovalues one file for each: PATH with _iso and the value before "
@@ -118,11 +187,20 @@ Command extract_command(CLI::App& program) {
         "Without -o nothing is written. 4D surfaces are written as .vtu, with the time of each vertex as "
         "point data "
         "t and all four coordinates as xyzt; cut them with 'hyperiso slice' or with ParaView's Contour of "
-        "t."},
+        "t. The isolines of 2D fields are whole lines, closed or open, in .svg, .geojson and .vtp: inside is "
+        "on "
+        "their left."},
        {{"the surface of the water through all of time, for ParaView",
          "hyperiso extract examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 -o water.vtu"},
         {"two isovalues, checked and measured, nothing written",
          "hyperiso extract examples/data/alpha_water_24x24x24x41.nrrd --iso 0.1,0.9 --measure"},
+        {"one drop of spray at one step, by a point on it, whatever else there is",
+         "hyperiso extract examples/data/alpha_water_24x24x24x41.nrrd --iso 0.02 --steps 14:15 --seed "
+         "0.645,0.104,0.271 -o drop.ply"},
+        {"the isolines of one step in a plane, as a picture",
+         "hyperiso extract examples/data/alpha_water_24x24x24x41.nrrd --steps 20:21 --crop ,12:13 --iso 0.5 "
+         "-o "
+         "lines.svg"},
         {"ten steps of it, numbers for a script",
          "hyperiso extract examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 --steps 10:20 --json"}}});
   return {app, [options] { return run(*options); }};

@@ -5,7 +5,6 @@
 #include "cli/manual.hpp"
 #include "cli/parse.hpp"
 
-#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <memory>
@@ -16,20 +15,6 @@ namespace {
 struct Interval : FieldMeshOptions {
   std::string range, level_axis = "last";
 };
-
-// "a:b", "a:b:n" or "a,b,..."
-std::vector<double> parse_levels(const std::string& range) {
-  if (range.find(':') == std::string::npos) return parse_numbers("--range", range);
-  const std::vector<std::string> parts = split(range, ':');
-  if (parts.size() > 3) fail_usage(text("--range: '", range, "' is not A:B, A:B:N or a list of levels"));
-  const double low = parse_number("--range", parts[0]), high = parse_number("--range", parts[1]);
-  const std::int64_t count = parts.size() == 3 ? parse_integer("--range", parts[2]) : 2;
-  if (count < 2 || count > 65536) fail_usage(text("--range: ", count, " levels; there can be 2 to 65536"));
-  std::vector<double> levels;
-  for (std::int64_t i = 0; i < count; ++i)
-    levels.push_back(std::lerp(low, high, static_cast<double>(i) / static_cast<double>(count - 1)));
-  return levels;
-}
 
 IntervalOptions interval_options(const Interval& options) {
   IntervalOptions result;
@@ -59,7 +44,7 @@ std::string report_of(const Outcome& outcome, const Interval& options, const std
 }
 
 int run(const Interval& options) {
-  const std::vector<double> levels = parse_levels(options.range);
+  const std::vector<double> levels = parse_levels("--range", options.range);
   IntervalOptions filling = interval_options(options); // wrong ones are told before anything is read
   const auto [field, read_seconds] = load_field(options, lowest_dimension, highest_dimension, 0);
 

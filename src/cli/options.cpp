@@ -201,7 +201,7 @@ void MeshOutputOptions::add_to(CLI::App& app, const std::string& several) {
            "file to write, in the format of its suffix. " + several +
                " Left out: nothing is written, only the report");
   add_text(app, "--format", format, "FORMAT", output_group,
-           "the format, whatever the suffix: vtu, vtp, ply, stl, obj or off");
+           "the format, whatever the suffix: vtu, vtp, ply, stl, obj, off or, for lines, svg or geojson");
 }
 
 void MeshOutputOptions::check(int dimension, int simplex_dimension, const std::string& written) const {
@@ -219,7 +219,10 @@ WriteMeshOptions MeshOutputOptions::write_options(const std::vector<Axis>& axes,
   WriteMeshOptions options;
   options.format = format;
   options.group = &group;
-  for (const Axis& axis : axes) options.axis_names.push_back(axis.name);
+  for (const Axis& axis : axes) {
+    options.axis_names.push_back(axis.name);
+    options.axis_units.push_back(axis.unit);
+  }
   return options;
 }
 

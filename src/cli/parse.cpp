@@ -131,4 +131,17 @@ IndexRange parse_range(std::string_view option, std::string_view text) {
   return range;
 }
 
+std::vector<double> parse_levels(std::string_view option, const std::string& range) {
+  if (range.find(':') == std::string::npos) return parse_numbers(option, range);
+  const std::vector<std::string> parts = split(range, ':');
+  if (parts.size() > 3) fail_usage(text(option, ": '", range, "' is not A:B, A:B:N or a list of levels"));
+  const double low = parse_number(option, parts[0]), high = parse_number(option, parts[1]);
+  const std::int64_t count = parts.size() == 3 ? parse_integer(option, parts[2]) : 2;
+  if (count < 2 || count > 65536) fail_usage(text(option, ": ", count, " levels; there can be 2 to 65536"));
+  std::vector<double> levels;
+  for (std::int64_t i = 0; i < count; ++i)
+    levels.push_back(std::lerp(low, high, static_cast<double>(i) / static_cast<double>(count - 1)));
+  return levels;
+}
+
 } // namespace hyperiso::cli

@@ -30,4 +30,7 @@ struct IndexRange {
 };
 IndexRange parse_range(std::string_view option, std::string_view text); // "2:10", "2:", ":10", ":", ""
 
+// Levels: "a:b", "a:b:n" for n of them, or "a,b,...".
+std::vector<double> parse_levels(std::string_view option, const std::string& range);
+
 } // namespace hyperiso::cli

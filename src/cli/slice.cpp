@@ -4,15 +4,18 @@
 #include "cli/dispatch.hpp"
 #include "cli/manual.hpp"
 #include "cli/options.hpp"
+#include "cli/parse.hpp"
 #include "cli/planes.hpp"
 #include "cli/point_data.hpp"
 #include "cli/surface.hpp"
 #include "core/memory.hpp"
+#include "hyperiso/interval.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <map>
 #include <memory>
 #include <set>
@@ -25,7 +28,7 @@ constexpr std::size_t worth_an_index = 4; // cuts: about what an index costs
 
 struct Slice {
   FieldOptions input;
-  std::string iso;
+  std::string iso, range;
   PlaneOptions where;
   SurfaceOptions surface;
   PointDataOptions data;
@@ -49,7 +52,8 @@ struct Outcome {
 // What all cuts share.
 struct Plan {
   std::vector<Plane> planes;
-  std::vector<double> isovalues; // empty for a mesh
+  std::vector<double> isovalues; // empty for a mesh and for a volume
+  std::vector<double> levels;    // of a volume
   std::vector<Axis> axes;        // of the space of the output: of the field, of the mesh, or of the world
   int simplex_dimension = 0;     // of the cut
 
@@ -149,6 +153,10 @@ void make_cuts(const Slice& options, const Plan& plan, std::vector<Outcome>& out
 Json json_of(const Outcome& outcome, const Plan& plan) {
   Json object{{"dimension", plan.dimension()}};
   if (outcome.isovalue) object["isovalue"] = *outcome.isovalue;
+  if (!plan.levels.empty()) {
+    object["range"] = {plan.levels.front(), plan.levels.back()};
+    object["levels"] = plan.levels;
+  }
   object["hyperplane"] = {{"normal", outcome.plane->normal}, {"offset", outcome.plane->offset}};
   object["frame"] = {{"directions", outcome.coordinates.directions}, {"origin", outcome.coordinates.foot}};
   object["vertices"] = outcome.vertices;
@@ -179,6 +187,7 @@ std::string report_of(const Outcome& outcome, const Plan& plan) {
   Report report;
   report.add("plane", equation(*outcome.plane, plan.axes));
   if (outcome.isovalue) report.add("isovalue", fmt::format("{}", *outcome.isovalue));
+  if (!plan.levels.empty()) report.add("levels", fmt::format("{:.12g}", fmt::join(plan.levels, ", ")));
   report.add("vertices", grouped(outcome.vertices));
   report.add(simplex_noun(plan.simplex_dimension), grouped(outcome.simplices));
   if (outcome.measure) add_measure(report, *outcome.measure, plan.simplex_dimension);
@@ -252,9 +261,67 @@ std::vector<MappedPlane> mapped_planes(const Slice& options, const Plan& plan, c
   return mapped;
 }
 
+// The samples that a plane meets: along the last axis those around it, if it lies across that axis.
+Field samples_for(const Plane& plane, SelectedSteps& steps) {
+  const std::vector<Axis>& axes = steps.info().axes;
+  if (plane.axis < 0) return take(steps.read(0, axes.back().count));
+  const auto axis = static_cast<std::size_t>(plane.axis);
+  const SampleRange around = take(samples_around(axes[axis], plane.offset / plane.normal[axis]));
+  if (axis + 1 == axes.size()) return take(steps.read(around.begin, around.end));
+  return take(steps.read(0, axes.back().count)).cropped(plane.axis, around.begin, around.end);
+}
+
+// A layer of one sample has no interval volume of its own dimension: it is the volume of the layer itself.
+template <int D>
+Mesh slice_volume(const Slice& options, const Plan& plan, const MappedPlane& mapped, const Field& field,
+                  const Progress& progress) {
+  IntervalOptions filling;
+  static_cast<ExtractOptions&>(filling) = options.surface.extract_options(options.machine);
+  filling.progress = progress;
+  const std::span<const double> levels(plan.levels);
+  const Plane& plane = mapped.plane;
+  const SliceFrame frame = mapped.map ? SliceFrame::axes : options.where.slice_frame();
+  return visit_sample_type(field.info.type, [&]<class T>(T) -> Mesh {
+    const auto view = field.view<T, D>();
+    if (plane.axis >= 0 && view.grid.axes[static_cast<std::size_t>(plane.axis)].count == 1)
+      return take(interval(view.at_index(plane.axis, 0), levels, filling));
+    const auto volume = take(interval(view, levels, filling));
+    return take(hyperiso::slice(volume, plane.hyperplane<D>(), SliceOptions{filling.precision, true, frame}));
+  });
+}
+
+std::vector<Outcome> slice_field_volume(const Slice& options, Plan& plan) {
+  if (!options.iso.empty()) fail_usage("--iso and --range: give one of them, a surface or a volume");
+  if (options.data.from_field()) fail_usage("--with, --normals: for surfaces; a volume carries its levels");
+  plan.levels = parse_levels("--range", options.range);
+  (void)options.surface.extract_options(options.machine); // wrong ones are told before anything is read
+  SelectedSteps steps(options.input.open(options.machine), options.input);
+  const FieldInfo& info = steps.info();
+  check_dimension(info.dimension(), lowest_sliced, highest_dimension, "the field");
+  plan.axes = info.axes;
+  plan.simplex_dimension = plan.dimension();
+  plan.planes = planes_in(options, plan.axes);
+  std::vector<Outcome> outcomes = outcomes_of(options, plan);
+  const std::vector<MappedPlane> mapped = mapped_planes(options, plan, info);
+  with_dimension<lowest_sliced>(info.dimension(), "the field", [&](auto dimension) {
+    constexpr int D = decltype(dimension)::value;
+    make_cuts<D>(options, plan, outcomes, [&](Outcome& outcome, const Progress& progress) -> Mesh {
+      const MappedPlane& plane = mapped[static_cast<std::size_t>(outcome.plane - plan.planes.data())];
+      const double read_before = steps.read_seconds();
+      const Field field = samples_for(plane.plane, steps);
+      outcome.read_seconds = steps.read_seconds() - read_before;
+      Mesh mesh = slice_volume<D>(options, plan, plane, field, progress);
+      if (plane.map) transform(mesh, *plane.map);
+      return mesh;
+    });
+  });
+  return outcomes;
+}
+
 // The names of the axes of the world are those of the field.
 std::vector<Outcome> slice_field(const Slice& options, Plan& plan) {
-  if (options.iso.empty()) fail_usage("--iso is required to slice a field");
+  if (options.iso.empty())
+    fail_usage("--iso (for a surface) or --range (for a volume) is required to slice a field");
   plan.isovalues = parse_isovalues(options.iso);
   (void)options.surface.extract_options(options.machine); // wrong ones are told before anything is read
   SelectedSteps steps(options.input.open(options.machine), options.input);
@@ -303,7 +370,8 @@ void check_planes(const Plan& plan) {
 }
 
 std::vector<Outcome> slice_mesh(const Slice& options, Plan& plan) {
-  if (!options.iso.empty()) fail_usage("--iso: the input is a mesh; its isovalue is chosen already");
+  if (!options.iso.empty() || !options.range.empty())
+    fail_usage("--iso, --range: the input is a mesh; its isovalues are chosen already");
   if (options.data.from_field())
     fail_usage(
         "--with, --normals: the input is a mesh; what its vertices carry comes along, so give these to "
@@ -335,7 +403,9 @@ int run(const Slice& options) {
   Plan plan;
   (void)options.where.slice_frame();
   const bool from_mesh = options.input.paths.size() == 1 && is_mesh_file(options.input.paths[0]);
-  const std::vector<Outcome> outcomes = from_mesh ? slice_mesh(options, plan) : slice_field(options, plan);
+  const std::vector<Outcome> outcomes = from_mesh               ? slice_mesh(options, plan)
+                                        : options.range.empty() ? slice_field(options, plan)
+                                                                : slice_field_volume(options, plan);
   print_outcomes(outcomes, options, plan);
   return 0;
 }
@@ -349,6 +419,12 @@ Command slice_command(CLI::App& program) {
   options->where.add_to(*app);
   app->add_option("--iso", options->iso, "fields: the isovalue, or several with commas between them")
       ->type_name("V[,V...]")
+      ->group("Surface");
+  app->add_option(
+         "--range", options->range,
+         "fields: instead of --iso, the volume between values, as 'hyperiso interval' takes them: A:B, "
+         "A:B:N or a list")
+      ->type_name("A:B[:N]")
       ->group("Surface");
   options->surface.add_to(*app);
   options->data.add_to(*app);
@@ -365,6 +441,7 @@ Command slice_command(CLI::App& program) {
   set_manual(
       *app,
       {{"slice INPUT... --iso V --time T[,T...] [options]", "slice MESH --time T[,T...] [options]",
+        "slice INPUT... --range A:B --time T[,T...] [options]",
         "slice INPUT... --axis NAME=V[,V...] [options]", "slice INPUT... --plane N,...,C [options]"},
        {"Cuts a 4D isosurface into triangles in space: the surface at time T, between the stored steps as "
         "well as on them, or on any other plane, and a mesh of tetrahedra as 'hyperiso interval' makes it. A "
@@ -380,6 +457,9 @@ Command slice_command(CLI::App& program) {
         "space: origin + u[0] directions[0] + u[1] directions[1] + ..."},
        {{"the surface at one moment, from the field",
          "hyperiso slice examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 --time 0.33 -o water.ply"},
+        {"where there is a tenth to nine tenths of water at that moment, as tetrahedra",
+         "hyperiso slice examples/data/alpha_water_24x24x24x41.nrrd --range 0.1:0.9 --time 0.33 -o "
+         "spray.vtu"},
         {"a movie of five frames for ParaView", "hyperiso slice examples/data/alpha_water_24x24x24x41.nrrd "
                                                 "--iso 0.5 --times 0:0.04:0.01 -o movie.pvd"},
         {"a surface made before, cut twice and measured",

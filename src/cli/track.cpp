@@ -5,6 +5,7 @@
 #include "cli/manual.hpp"
 #include "cli/options.hpp"
 #include "cli/parse.hpp"
+#include "cli/seed.hpp"
 #include "cli/surface.hpp"
 #include "core/memory.hpp"
 #include "core/text.hpp"
@@ -73,17 +74,6 @@ double not_negative(const char* option, const std::string& value) {
   const double number = parse_number(option, value);
   if (number < 0) fail_usage(text(option, ": ", number, " is negative"));
   return number;
-}
-
-// The cell that a point lies in, by the indices of its lowest corner.
-std::vector<std::int64_t> cell_at(const std::string& point, const std::vector<Axis>& axes) {
-  const std::vector<double> coordinates = parse_numbers("--seed", point);
-  if (coordinates.size() != axes.size())
-    fail_usage(text("--seed: ", coordinates.size(), " coordinates; the field has ", axes.size(), " axes"));
-  std::vector<std::int64_t> cell;
-  for (std::size_t axis = 0; axis < axes.size(); ++axis)
-    cell.push_back(std::min(take(samples_around(axes[axis], coordinates[axis])).begin, axes[axis].count - 2));
-  return cell;
 }
 
 TrackingGraph make_graph(const Track& options, StepSource& steps, double isovalue, TrackOptions tracking) {

@@ -24,6 +24,10 @@ void write_stl(AtomicFile& file, const Mesh& mesh);
 void write_obj(AtomicFile& file, const Mesh& mesh);
 void write_off(AtomicFile& file, const Mesh& mesh);
 
+// Lines in R^2. Errors: invalid_argument if the segments branch or a coordinate is not finite.
+Status write_svg(AtomicFile& file, const Mesh& mesh, const WriteMeshOptions& options);
+Status write_geojson(AtomicFile& file, const Mesh& mesh, const WriteMeshOptions& options);
+
 // The point data that write_vtu makes of the mesh itself: no attribute may have such a name.
 std::vector<std::string> names_of_point_data(const Mesh& mesh, const WriteMeshOptions& options);
 

@@ -174,6 +174,7 @@ class Reader {
     int simplex_dimension;
     std::uint64_t count;
     pugi::xml_node arrays;
+    bool may_be_long = false; // lines of more than two points
   };
 
   // For a mesh without simplices: as its writer noted it down, else a surface.
@@ -206,7 +207,23 @@ class Reader {
       fail(xml_.unsupported("holds other cells than segments only or triangles only (vertices, strips or a "
                             "mixture); triangulate it first"));
     const int K = lines > 0 ? 1 : polys > 0 ? 2 : noted_simplex_dimension();
-    return K == 1 ? Cells{1, lines, piece.child("Lines")} : Cells{2, polys, piece.child("Polys")};
+    return K == 1 ? Cells{1, lines, piece.child("Lines"), !piece.child("CellData").child("DataArray")}
+                  : Cells{2, polys, piece.child("Polys")};
+  }
+
+  // Lines of any number of points, as segments in their order.
+  void read_lines(Mesh& mesh, const Cells& cells, const std::vector<std::uint64_t>& offsets) {
+    const auto points = values_named<std::uint64_t>(cells.arrays, "connectivity");
+    std::vector<std::uint64_t> corners;
+    std::uint64_t begin = 0;
+    for (const std::uint64_t end : offsets) {
+      if (end < begin || end > points.size())
+        return fail(xml_.malformed(text("a line ends at corner ", end, " of ", points.size())));
+      for (std::uint64_t i = begin; i + 1 < end; ++i)
+        corners.insert(corners.end(), {points[i], points[i + 1]});
+      begin = end;
+    }
+    set_corners(mesh, corners);
   }
 
   void read_simplices(Mesh& mesh, const Cells& cells) {
@@ -214,6 +231,9 @@ class Reader {
     const auto offsets = values_named<std::uint64_t>(cells.arrays, "offsets");
     if (offsets.size() != cells.count)
       fail(xml_.malformed(text("has ", offsets.size(), " cell offsets for ", cells.count, " cells")));
+    const bool segments_only = offsets.empty() || offsets.back() == 2 * cells.count;
+    if (status_ && cells.simplex_dimension == 1 && !segments_only && cells.may_be_long)
+      return read_lines(mesh, cells, offsets);
     for (std::size_t i = 0; i < offsets.size() && status_; ++i)
       if (offsets[i] != (i + 1) * corners)
         fail(xml_.unsupported(

@@ -16,24 +16,30 @@ struct Format {
   int simplex_dimension[2]; // smallest and largest
   int largest_dimension;
   std::uint64_t largest_count; // of vertices, and of simplices
-  void (*write)(AtomicFile&, const Mesh&, const WriteMeshOptions&);
+  Status (*write)(AtomicFile&, const Mesh&, const WriteMeshOptions&);
 };
 
-template <void (*write)(AtomicFile&, const Mesh&)>
-void without_options(AtomicFile& file, const Mesh& mesh, const WriteMeshOptions&) {
-  write(file, mesh);
+template <auto write>
+Status write_any(AtomicFile& file, const Mesh& mesh, const WriteMeshOptions& options) {
+  if constexpr (std::is_invocable_v<decltype(write), AtomicFile&, const Mesh&>)
+    write(file, mesh);
+  else
+    write(file, mesh, options);
+  return {};
 }
 
 constexpr std::uint64_t any_count = UINT64_MAX;
 constexpr std::uint64_t int_count = std::numeric_limits<std::int32_t>::max();
 
 constexpr Format formats[] = {
-    {"vtu", "segments to 4-simplices in up to 4 dimensions", {1, 4}, 4, any_count, write_vtu},
-    {"vtp", "segments and triangles in 2 or 3 dimensions", {1, 2}, 3, any_count, write_vtp},
-    {"obj", "segments and triangles in 2 or 3 dimensions", {1, 2}, 3, any_count, without_options<write_obj>},
-    {"off", "triangles in 2 or 3 dimensions", {2, 2}, 3, any_count, without_options<write_off>},
-    {"ply", "triangles in 2 or 3 dimensions", {2, 2}, 3, int_count, without_options<write_ply>},
-    {"stl", "triangles in 2 or 3 dimensions", {2, 2}, 3, UINT32_MAX, without_options<write_stl>},
+    {"vtu", "segments to 4-simplices in up to 4 dimensions", {1, 4}, 4, any_count, write_any<write_vtu>},
+    {"vtp", "segments and triangles in 2 or 3 dimensions", {1, 2}, 3, any_count, write_any<write_vtp>},
+    {"obj", "segments and triangles in 2 or 3 dimensions", {1, 2}, 3, any_count, write_any<write_obj>},
+    {"off", "triangles in 2 or 3 dimensions", {2, 2}, 3, any_count, write_any<write_off>},
+    {"ply", "triangles in 2 or 3 dimensions", {2, 2}, 3, int_count, write_any<write_ply>},
+    {"stl", "triangles in 2 or 3 dimensions", {2, 2}, 3, UINT32_MAX, write_any<write_stl>},
+    {"svg", "lines in 2 dimensions", {1, 1}, 2, any_count, write_svg},
+    {"geojson", "lines in 2 dimensions", {1, 1}, 2, any_count, write_geojson},
 };
 
 std::string format_name(const std::filesystem::path& path, const WriteMeshOptions& options) {
@@ -73,7 +79,7 @@ Result<const Format*> find_format(int dimension, int simplex_dimension, const st
   if (format == std::end(formats))
     return Error{Code::file_unsupported,
                  text(path.string(), ": \"", name, "\" is no format for meshes here; ",
-                      "there are vtu, vtp, ply, stl, obj and off")};
+                      "there are vtu, vtp, ply, stl, obj, off, svg and geojson")};
   if (!fits(*format, dimension, simplex_dimension))
     return does_not_fit(*format, dimension, simplex_dimension, path);
   return format;
@@ -123,7 +129,8 @@ Status write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Wri
     if (const auto checked = check(mesh, options); !checked) return checked;
     auto file = AtomicFile::create(path);
     if (!file) return file.error();
-    format.write(*file, mesh, options);
+    if (const Status written = format.write(*file, mesh, options); !written)
+      return Error{written.error().code, text(path.string(), ": ", written.error().message)};
     return file->commit(options.group);
   } catch (const std::bad_alloc&) {
     return Error{Code::out_of_memory, text("no memory to write ", path.string())};

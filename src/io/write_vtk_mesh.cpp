@@ -2,6 +2,7 @@
 // vtk_mesh_names.hpp; read_vtk_mesh.cpp takes it from there.
 
 #include "core/text.hpp"
+#include "hyperiso/polylines.hpp"
 #include "io/encoding.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/vtk_mesh_names.hpp"
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 
 namespace hyperiso {
 namespace {
@@ -188,7 +190,47 @@ void write_vtu(AtomicFile& file, const Mesh& mesh, const WriteMeshOptions& optio
             [&] { write_cells(file, mesh, "Cells", true); });
 }
 
+namespace {
+
+// The lines that segments join to, unless they have something of their own to tell or branch.
+std::optional<std::vector<Polyline>> lines_of(const Mesh& mesh) {
+  const bool told_apart = std::ranges::any_of(mesh.attributes, [](const Attribute& attribute) {
+    return attribute.location == Attribute::Location::simplex;
+  });
+  if (mesh.simplex_dimension != 1 || told_apart) return std::nullopt;
+  auto lines = polylines(mesh);
+  return lines ? std::optional(*std::move(lines)) : std::nullopt;
+}
+
+template <class T>
+void write_line_arrays(AtomicFile& file, const std::vector<Polyline>& lines) {
+  std::vector<T> corners, ends;
+  for (const Polyline& line : lines) {
+    corners.insert(corners.end(), line.vertices.begin(), line.vertices.end());
+    if (line.closed) corners.push_back(static_cast<T>(line.vertices.front()));
+    ends.push_back(static_cast<T>(corners.size()));
+  }
+  write_array<T>(file, "connectivity", corners.size(), 1, [&](std::uint64_t i) { return corners[i]; });
+  write_array<T>(file, "offsets", ends.size(), 1, [&](std::uint64_t i) { return ends[i]; });
+}
+
+void write_lines(AtomicFile& file, const Mesh& mesh, const std::vector<Polyline>& lines) {
+  file.write("<Lines>\n");
+  if (mesh.vertex_count() + lines.size() <= std::numeric_limits<std::int32_t>::max())
+    write_line_arrays<std::int32_t>(file, lines);
+  else
+    write_line_arrays<std::int64_t>(file, lines);
+  file.write("</Lines>\n");
+}
+
+} // namespace
+
 void write_vtp(AtomicFile& file, const Mesh& mesh, const WriteMeshOptions& options) {
+  if (const auto lines = lines_of(mesh))
+    return write_vtk(file, mesh, options, "PolyData",
+                     text("NumberOfVerts=\"0\" NumberOfLines=\"", lines->size(),
+                          "\" NumberOfStrips=\"0\" NumberOfPolys=\"0\""),
+                     [&] { write_lines(file, mesh, *lines); });
   const bool segments = mesh.simplex_dimension == 1;
   const auto counts =
       text("NumberOfVerts=\"0\" NumberOfLines=\"", segments ? mesh.simplex_count() : 0,
