@@ -162,6 +162,23 @@ TEST(PageSamples, NothingCrossesGivesNothing) {
     }
 }
 
+// The step of codes must be a number whatever the range of the samples.
+TEST(PageSamples, ExtremeRanges) {
+  for (const auto& [low, high] : {std::pair{-1.7e308, 1.7e308}, std::pair{5e-324, 1e-323}}) {
+    FieldInfo info;
+    info.type = SampleType::f64;
+    for (int axis = 0; axis < 3; ++axis) info.axes.push_back({.count = 3});
+    NewField made = *allocate_field(info);
+    auto* samples = reinterpret_cast<double*>(made.samples);
+    for (int i = 0; i < 27; ++i) samples[i] = i % 2 ? low : high;
+    const double isovalue = low / 2 + high / 2;
+    const SimplexMesh<3> wanted = *extract(made.field.view<double, 3>(), isovalue);
+    const SampleLayers layers = decoded(pack_field(made.field, isovalue, Inside::above, false), {3, 3, 3});
+    EXPECT_TRUE(same(surface<3>(layers, made.field, Inside::above).simplices, wanted.simplices));
+    EXPECT_TRUE(std::isfinite(layers.scale().origin));
+  }
+}
+
 // A damaged page must say so, not read past its bytes.
 TEST(PageSamples, BytesOfAnotherLengthAreRefused) {
   const Field field = random_field<float, 3>({17, 9, 8}, 1, false);

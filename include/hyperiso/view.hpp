@@ -28,7 +28,8 @@ struct PageOptions {
   /// of.
   const TrackingGraph* tracking = nullptr;
   /// Grid to world coordinates, where the mesh has been moved so: `axes` are then those of the grid, and they
-  /// and what `tracking` says of times and places are moved along. `write_field_page` takes that of its field.
+  /// and what `tracking` says of times and places are moved along. `write_field_page` takes that of its
+  /// field.
   std::optional<Affine> world;
   std::uint64_t size_limit = UINT64_MAX; ///< bytes that the page may have
   Progress progress = {};

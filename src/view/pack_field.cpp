@@ -86,7 +86,9 @@ CodeScale scale_for(const Field& field, double isovalue, const std::vector<std::
     if (low > high) low = high = isovalue;
     const double top = scale.special ? CodeScale::minus_infinity - 1 : 65535;
     // Rounded to one side of the isovalue, the samples may take one code more than their range.
-    scale.step = high > low ? (high - low) / (top - 2) : 1;
+    // Neither beyond all numbers nor 0, whatever the range.
+    scale.step =
+        high > low ? std::max(high / (top - 2) - low / (top - 2), std::numeric_limits<double>::min()) : 1;
     scale.origin = low - scale.step;
     scale.isovalue = (isovalue - scale.origin) / scale.step;
     if (isovalue >= low && isovalue <= high) {
