@@ -267,10 +267,9 @@ void check_payload(const View& options, bool from_mesh) {
   if (options.surface.method == "barycentric")
     fail_usage(text("--payload ", options.payload, ": a page does not extract by --method barycentric"));
   if (!has_field_pages())
-    fail_usage(
-        text("--payload ", options.payload,
-             ": this build of hyperiso has no extraction for pages; build it where CMake finds Clang's "
-             "WebAssembly (docs/dependencies.md), or take --payload mesh"));
+    fail_usage(text("--payload ", options.payload,
+                    ": this build of hyperiso has no extraction for pages; build it where there is a Clang "
+                    "for WebAssembly (docs/dependencies.md), or take --payload mesh"));
 }
 
 int run(const View& options) {
