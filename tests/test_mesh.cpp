@@ -106,6 +106,24 @@ TEST(Measure, volumes_count_inverted_simplices) {
   EXPECT_TRUE(found->vector_area.empty());
 }
 
+// A simplex of an interval volume beside samples that equal the level: flat, but for the rounding of its
+// corners, and a much smaller one that is turned indeed.
+TEST(Measure, flat_simplices_are_not_inverted) {
+  const double x = 0.9791666739999999, y = 0.52083333700000001, z = 0.0625;
+  Mesh flat = make_mesh(3, 3,
+                        {x, y, z, 0.93750000699999991, y, 0.020833333000000055, x, 0.562500004, z,
+                         0.97916666569810318, 0.56249999569810327, 0.062499991698103316},
+                        {0, 1, 2, 3});
+  for (int turn = 0; turn < 2; ++turn) {
+    EXPECT_EQ(measure(flat)->inverted_simplices, 0u);
+    flat.simplices.set(0, 1);
+    flat.simplices.set(1, 0);
+  }
+  const double s = 1e-12;
+  EXPECT_EQ(measure(make_mesh(3, 3, {0, 0, 0, 0, s, 0, s, 0, 0, 0, 0, s}, {0, 1, 2, 3}))->inverted_simplices,
+            1u);
+}
+
 TEST(Measure, contents_alone_are_those_of_the_whole) {
   for (const Mesh& mesh : {simplex_boundary(4), make_mesh(2, 2, {0, 0, 1, 0, 0, 1, 1, 1}, {0, 1, 2, 1, 2, 3}),
                            make_mesh(2, 1, {0, 0, 1, 1}, {0, 1, 1, 1})}) {

@@ -11,9 +11,11 @@ namespace hyperiso {
 
 /// Sums over the simplices of a mesh; K is their dimension, D that of the space.
 struct Contents {
-  double content = 0;                   ///< total K-volume, unsigned
-  std::vector<double> vector_area;      ///< K = D-1: sum of content times unit normal, D numbers; else empty
-  std::uint64_t inverted_simplices = 0; ///< K = D: of negative orientation
+  double content = 0;              ///< total K-volume, unsigned
+  std::vector<double> vector_area; ///< K = D-1: sum of content times unit normal, D numbers; else empty
+  /// K = D: of negative orientation, by more than the rounding of their coordinates can make: a simplex that
+  /// is flat, as those on samples that equal a level are, has no orientation to tell.
+  std::uint64_t inverted_simplices = 0;
   std::uint64_t zero_content_simplices = 0; ///< whose computed content is exactly 0
 };
 

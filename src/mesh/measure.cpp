@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <new>
 
 namespace hyperiso {
@@ -142,13 +143,42 @@ class ContentSum {
     const double signed_content = corners_ == dimension_ + 1 ? volume() : area(sums.vector_area);
     const double content = std::abs(signed_content);
     sums.content += content;
-    if (signed_content < 0) ++sums.inverted_simplices;
+    if (signed_content < 0 && corners_ == dimension_ + 1 && -determinant_ > rounding_of(positions, simplex))
+      ++sums.inverted_simplices;
     if (content == 0) ++sums.zero_content_simplices;
   }
 
  private:
-  double volume() const {
-    return determinant(edges_, static_cast<int>(dimension_)) / factorial(static_cast<int>(dimension_));
+  double volume() {
+    determinant_ = determinant(edges_, static_cast<int>(dimension_));
+    return determinant_ / factorial(static_cast<int>(dimension_));
+  }
+
+  // The most that the rounding of coordinates can change the determinant by. With every coordinate off by
+  // some units in its last place, a row of lengths n is off by d at most, and (Hadamard) the determinant by
+  // no more than the sum over the rows of d times the lengths n + d of the others.
+  template <class Real, class Index>
+  double rounding_of(std::span<const Real> positions, std::span<const Index> simplex) const {
+    constexpr double units = 4; // of interpolation between two samples, in each corner
+    double largest = 0;
+    for (const Index vertex : simplex)
+      for (std::size_t k = 0; k < dimension_; ++k)
+        largest = std::max(largest, std::abs(static_cast<double>(positions[vertex * dimension_ + k])));
+    const double off = 2 * units * static_cast<double>(std::numeric_limits<Real>::epsilon()) * largest *
+                       std::sqrt(static_cast<double>(dimension_));
+    double sum = 0;
+    for (std::size_t row = 0; row < dimension_; ++row) {
+      double product = off;
+      for (std::size_t other = 0; other < dimension_; ++other) {
+        if (other == row) continue;
+        double squared = 0;
+        for (std::size_t k = 0; k < dimension_; ++k)
+          squared += edges_[other * dimension_ + k] * edges_[other * dimension_ + k];
+        product *= std::sqrt(squared) + off;
+      }
+      sum += product;
+    }
+    return sum;
   }
 
   // The normal n with det[n; edges] = |n|^2 has the cofactors of the first row as coordinates.
@@ -170,6 +200,7 @@ class ContentSum {
 
   std::size_t dimension_, corners_;
   std::vector<double> edges_, minor_; // rows
+  double determinant_ = 0;            // of the edges of a volume's simplex
 };
 
 template <std::size_t Corners, class Real, class Index>
