@@ -618,6 +618,21 @@ class Animate(Case):
         self.assertIn(merge[0], times)
         self.assertEqual(times, sorted(set(times)))
 
+    def test_times_are_the_worlds_as_those_of_the_mesh_are(self):
+        self.sample("ball", "8,8,8,3", "ball.raw")
+        (self.folder / "turned.nhdr").write_text(
+            "NRRD0004\ntype: float\ndimension: 4\nsizes: 8 8 8 3\nencoding: raw\nendian: little\nspace dimension: 4\n"
+            "space directions: (1,1,0,0) (-1,1,0,0) (0,0,1,0) (0,0,0,0.5)\nspace origin: (5,0,0,3)\ndata file: ball.raw\n")
+        self.ok("extract", "turned.nhdr", "--iso", "0.5", "-o", "turned.vtu")
+        for source, name in [(["turned.nhdr", "--iso", "0.5"], "f"), (["turned.vtu"], "m")]:
+            made = self.ok("animate", *source, "--frames", "3", "-o", name + "_%d.ply", "--json").json()
+            self.assertEqual(made["times"], [3, 4])
+            self.ok("animate", *source, "--times", "3.75", "-o", name + "_between_%d.ply")
+        for name in ["0", "1", "between_0"]:
+            field, mesh = (self.ok("measure", f"{kind}_{name}.ply", "--json").json() for kind in "fm")
+            self.assertAlmostEqual(field["measure"]["content"] if "measure" in field else field["content"],
+                                   mesh["measure"]["content"] if "measure" in mesh else mesh["content"], places=3)
+
     def test_colours_have_one_range_for_all_frames(self):
         self.sample("ball", "12,12,12,5", "ball.nrrd")
         self.ok("animate", "ball.nrrd", "--iso", "0.5", "--frames", "3", "--colour-by", "x", "-o", "f_%d.ply")

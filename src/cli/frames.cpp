@@ -17,22 +17,52 @@ std::pair<double, double> ends_of(const Axis& axis) {
   return std::minmax({axis.coordinate(0), axis.coordinate(axis.count - 1)});
 }
 
+// What the map to the world does to time: scale * t + offset. Fails where it mixes time with space.
+struct WorldTime {
+  double scale = 1, offset = 0;
+
+  explicit WorldTime(const FieldInfo& info) {
+    if (!info.world) return;
+    const std::size_t D = info.axes.size();
+    const double* row = &info.world->linear[(D - 1) * D];
+    if (std::any_of(row, row + D - 1, [](double share) { return share != 0; }))
+      fail_usage("the field's map to the world mixes time with space: there are no frames of one moment");
+    scale = row[D - 1];
+    offset = info.world->offset[D - 1];
+  }
+  double operator()(double time) const { return scale * time + offset; }
+  Axis operator()(Axis axis) const {
+    axis.origin = (*this)(axis.origin);
+    axis.spacing *= scale;
+    for (double& coordinate : axis.coordinates) coordinate = (*this)(coordinate);
+    return axis;
+  }
+};
+
 template <int D>
 class FieldFrames final : public Frames {
  public:
   FieldFrames(std::unique_ptr<SelectedSteps> steps, std::vector<NamedSteps> others, double isovalue,
               ExtractOptions extraction, bool normals, bool quiet)
       : steps_(std::move(steps)), others_(std::move(others)), isovalue_(isovalue), extraction_(extraction),
-        slicer_(*steps_, isovalue, options_of(extraction, normals)), quiet_(quiet) {}
+        slicer_(*steps_, isovalue, options_of(extraction, normals)), quiet_(quiet),
+        world_time_(steps_->info()), axes_(steps_->info().axes) {
+    axes_.back() = world_time_(axes_.back());
+  }
 
-  const std::vector<Axis>& axes() const override { return steps_->info().axes; }
+  const std::vector<Axis>& axes() const override { return axes_; }
   std::pair<double, double> times() const override { return ends_of(axes().back()); }
   void check(double time) const override { (void)take(samples_around(axes().back(), time)); }
   double read_seconds() const override { return steps_->read_seconds(); }
 
   Mesh at(double time) override {
-    Mesh mesh = take(slicer_.slice(Hyperplane<D>::at(D - 1, time)));
-    if (const auto& world = steps_->info().world) transform(mesh, at_coordinate(*world, D - 1, time));
+    const FieldInfo& info = steps_->info();
+    const SampleRange around = take(samples_around(axes().back(), time));
+    const bool at_step = around.end - around.begin == 1; // then to the bit
+    const double on_axis =
+        at_step ? info.axes.back().coordinate(around.begin) : (time - world_time_.offset) / world_time_.scale;
+    Mesh mesh = take(slicer_.slice(Hyperplane<D>::at(D - 1, on_axis)));
+    if (info.world) transform(mesh, at_coordinate(*info.world, D - 1, on_axis));
     return mesh;
   }
 
@@ -45,7 +75,7 @@ class FieldFrames final : public Frames {
     std::vector<double> times;
     for (const TrackingEvent& event : take(track(*steps_, isovalue_, tracking)).events)
       if (event.type != EventType::open_start && event.type != EventType::open_end)
-        times.push_back(event.time);
+        times.push_back(world_time_(event.time));
     return times;
   }
 
@@ -64,6 +94,8 @@ class FieldFrames final : public Frames {
   ExtractOptions extraction_;
   FieldSlicer<D> slicer_;
   bool quiet_;
+  WorldTime world_time_;
+  std::vector<Axis> axes_; // time as it is in the world
 };
 
 template <int D>
