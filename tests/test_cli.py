@@ -618,6 +618,21 @@ class Animate(Case):
         self.assertIn(merge[0], times)
         self.assertEqual(times, sorted(set(times)))
 
+    def test_components_have_nodes_named_by_their_tracks(self):
+        self.sample("gaussians", "16,16,16,6", "blobs.nrrd")  # two that merge
+        self.ok("animate", "blobs.nrrd", "--iso", "0.5", "--frames", "3", "--tracks", "-o", "t.glb")
+        data = (self.folder / "t.glb").read_bytes()
+        nodes = json.loads(data[20:20 + struct.unpack_from("<I", data, 12)[0]])["nodes"]
+        parts = [[nodes[child]["name"] for child in node.get("children", [])] for node in nodes
+                 if node["name"].startswith("frame")]
+        self.assertEqual(parts[0], ["track 0", "track 1"])
+        self.assertEqual(len(parts[2]), 1)
+        self.assertIn(parts[2][0], parts[0])
+        self.ok("animate", "blobs.nrrd", "--iso", "0.5", "--times", "0.33", "--tracks", "--events", "-o", "t.pvd")
+        self.assertIn(b"track_id", (self.folder / "t_0000.vtp").read_bytes())
+        self.assert_refused(2, "animate", "blobs.nrrd", "--iso", "0.5", "--frames", "3", "--tracks", "--colour-by", "x", "-o",
+                            "t.glb", words=["--tracks", "--colour-by"])
+
     def test_times_are_the_worlds_as_those_of_the_mesh_are(self):
         self.sample("ball", "8,8,8,3", "ball.raw")
         (self.folder / "turned.nhdr").write_text(

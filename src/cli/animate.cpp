@@ -18,7 +18,7 @@ namespace {
 struct Animate {
   FieldOptions input;
   std::string iso, frames, times;
-  bool events = false;
+  bool events = false, tracks = false;
   SurfaceOptions surface;
   PointDataOptions data;
   MovieOptions movie;
@@ -88,6 +88,7 @@ std::unique_ptr<Frames> frames_for(const Animate& options, Outcome& outcome) {
     if (!options.iso.empty()) fail_usage("--iso: the input is a mesh; its isovalue is chosen already");
     if (options.data.from_field())
       fail_usage("--with, --normals: the input is a mesh; give them when it is extracted");
+    if (options.tracks) fail_usage("--tracks: the input is a mesh; tracking needs the field");
     return frames_of_mesh(options.input.paths[0], options.surface, options.machine, options.printing);
   }
   if (options.iso.empty()) fail_usage("--iso is required to animate a field");
@@ -97,13 +98,16 @@ std::unique_ptr<Frames> frames_for(const Animate& options, Outcome& outcome) {
   // Surfaces of barycentric do not know where their vertices came from.
   const bool can = options.surface.method != "barycentric";
   const bool normals = options.data.normals || (can && options.movie.is_shaded());
-  return frames_of_field(options.input, isovalues[0], options.surface, options.data, normals, options.machine,
-                         options.printing);
+  const auto frames_of = options.tracks ? frames_with_tracks : frames_of_field;
+  return frames_of(options.input, isovalues[0], options.surface, options.data, normals, options.machine,
+                   options.printing);
 }
 
 Outcome animate(const Animate& options) {
   Outcome outcome;
   options.movie.check();
+  if (options.tracks && !options.data.colour_by.empty())
+    fail_usage("--tracks and --colour-by both choose the colours: give one of them");
   const auto frames = frames_for(options, outcome);
   const auto dimension = static_cast<int>(frames->axes().size()) - 1;
   options.movie.check_frames(dimension);
@@ -199,6 +203,12 @@ Command animate_command(CLI::App& program) {
                 "also a frame at every moment at which a component is born, dies, merges, splits or changes "
                 "otherwise, exactly")
       ->group("Moments");
+  app->add_flag(
+         "--tracks", options->tracks,
+         "follow the components: a colour for each in films and pictures, a node for each in .glb, cell "
+         "data track_id in .pvd. Between two steps a piece goes by its track at the first of them. The "
+         "whole surface is held in memory")
+      ->group("Surface");
   app->add_option("--iso", options->iso, "fields: the isovalue")->type_name("V")->group("Surface");
   options->surface.add_to(*app);
   options->data.add_to(*app, "films, pictures, .glb, .ply, by an axis too", "of all frames");

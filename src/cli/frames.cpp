@@ -4,6 +4,8 @@
 #include "cli/failure.hpp"
 #include "core/text.hpp"
 #include "hyperiso/slice.hpp"
+#include "hyperiso/track.hpp"
+#include "view/track_labels.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -39,6 +41,42 @@ struct WorldTime {
   }
 };
 
+// Names the simplices of a surface in space and time by the track that their earliest corner is in.
+void add_track_ids(Mesh& mesh, const TrackingGraph& graph) {
+  const std::vector<std::int32_t> of_vertices = tracks_of_vertices(mesh, graph);
+  const auto D = static_cast<std::size_t>(mesh.dimension);
+  std::vector<std::int32_t> tracks(mesh.simplex_count(), -1);
+  for (std::size_t simplex = 0; simplex < tracks.size(); ++simplex) {
+    double earliest = HUGE_VAL;
+    for (std::size_t corner = 0; corner < D; ++corner) {
+      const std::size_t vertex = mesh.simplices[simplex * D + corner];
+      const double time = mesh.positions[vertex * D + D - 1];
+      if (of_vertices[vertex] < 0 || !(time < earliest)) continue;
+      earliest = time;
+      tracks[simplex] = of_vertices[vertex];
+    }
+  }
+  mesh.attributes.push_back({"track_id", Attribute::Location::simplex, 1, std::move(tracks)});
+}
+
+TrackingGraph track_of(StepSource& steps, double isovalue, const ExtractOptions& extraction, bool measured,
+                       bool quiet) {
+  ProgressBar bar("track", quiet);
+  TrackOptions tracking;
+  tracking.extraction = extraction;
+  tracking.extraction.progress = bar.callback();
+  tracking.measure_features = measured;
+  return take(track(steps, isovalue, tracking));
+}
+
+std::vector<double> times_of_events(const TrackingGraph& graph, const WorldTime& world_time) {
+  std::vector<double> times;
+  for (const TrackingEvent& event : graph.events)
+    if (event.type != EventType::open_start && event.type != EventType::open_end)
+      times.push_back(world_time(event.time));
+  return times;
+}
+
 template <int D>
 class FieldFrames final : public Frames {
  public:
@@ -67,16 +105,7 @@ class FieldFrames final : public Frames {
   }
 
   std::vector<double> events() override {
-    ProgressBar bar("track", quiet_);
-    TrackOptions tracking;
-    tracking.extraction = extraction_;
-    tracking.extraction.progress = bar.callback();
-    tracking.measure_features = false;
-    std::vector<double> times;
-    for (const TrackingEvent& event : take(track(*steps_, isovalue_, tracking)).events)
-      if (event.type != EventType::open_start && event.type != EventType::open_end)
-        times.push_back(world_time_(event.time));
-    return times;
+    return times_of_events(track_of(*steps_, isovalue_, extraction_, false, quiet_), world_time_);
   }
 
  private:
@@ -101,9 +130,11 @@ class FieldFrames final : public Frames {
 template <int D>
 class MeshFrames final : public Frames {
  public:
-  MeshFrames(Mesh&& mesh, Precision precision, double read_seconds)
+  // `events`: where they are known.
+  MeshFrames(Mesh&& mesh, Precision precision, double read_seconds,
+             std::optional<std::vector<double>> events = std::nullopt)
       : mesh_(std::move(mesh)), index_(mesh_), axes_(axes_of(mesh_)), precision_(precision),
-        read_seconds_(read_seconds) {
+        read_seconds_(read_seconds), events_(std::move(events)) {
     if (knows_times()) return;
     times_ = {HUGE_VAL, -HUGE_VAL};
     for (std::size_t vertex = 0; vertex < mesh_.vertex_count(); ++vertex) {
@@ -126,6 +157,7 @@ class MeshFrames final : public Frames {
     return take(index_.slice(mesh_, Hyperplane<D>::at(D - 1, time), {.precision = precision_}));
   }
   std::vector<double> events() override {
+    if (events_) return *events_;
     fail_usage("--events: the input is a mesh; finding events needs the field");
   }
 
@@ -137,6 +169,7 @@ class MeshFrames final : public Frames {
   std::vector<Axis> axes_;
   Precision precision_;
   double read_seconds_;
+  std::optional<std::vector<double>> events_;
   std::pair<double, double> times_; // where the mesh does not know its grid
 };
 
@@ -156,6 +189,37 @@ std::unique_ptr<Frames> frames_of_field(const FieldOptions& input, double isoval
     return std::make_unique<FieldFrames<decltype(D)::value>>(std::move(steps), std::move(others), isovalue,
                                                              surface.extract_options(machine), normals,
                                                              printing.quiet);
+  });
+}
+
+std::unique_ptr<Frames> frames_with_tracks(const FieldOptions& input, double isovalue,
+                                           const SurfaceOptions& surface, const PointDataOptions& data,
+                                           bool normals, const MachineOptions& machine,
+                                           const PrintOptions& printing) {
+  if (surface.method == "barycentric")
+    fail_usage("--tracks: surfaces by --method barycentric have no grid edges to find their tracks by");
+  ExtractOptions extraction = surface.extract_options(machine);
+  SelectedSteps steps(input.open(machine), input);
+  check_dimension(steps.info().dimension(), lowest_animated, highest_dimension, "the field");
+  check_axes(steps.info());
+  const WorldTime world_time(steps.info());
+  const std::int64_t count = steps.info().axes.back().count;
+  const Field field = take(steps.read(0, count));
+  std::vector<NamedField> others;
+  for (const NamedSteps& other : data.open(input, machine))
+    others.push_back({other.name, take(other.steps->read(0, other.steps->info().axes.back().count))});
+  FieldSteps in_memory(field);
+  const TrackingGraph graph = track_of(in_memory, isovalue, extraction, true, printing.quiet);
+
+  extraction = surface.extract_options(machine); // with the memory that is left now
+  return with_view<lowest_animated>(field, [&]<class T, int D>(const FieldView<T, D>& view) {
+    Mesh mesh = take(extract(view, isovalue, extraction));
+    if (normals || !others.empty())
+      take(add_point_data(mesh, field, isovalue, extraction.inside, others, normals));
+    add_track_ids(mesh, graph);
+    if (field.info.world) transform(mesh, *field.info.world);
+    return std::unique_ptr<Frames>(std::make_unique<MeshFrames<D>>(
+        std::move(mesh), extraction.precision, steps.read_seconds(), times_of_events(graph, world_time)));
   });
 }
 

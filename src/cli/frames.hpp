@@ -3,9 +3,7 @@
 
 #include "cli/point_data.hpp"
 #include "cli/surface.hpp"
-#include "hyperiso/track.hpp"
 
-#include <functional>
 #include <memory>
 
 namespace hyperiso::cli {
@@ -28,6 +26,13 @@ std::unique_ptr<Frames> frames_of_field(const FieldOptions& input, double isoval
                                         const SurfaceOptions& surface, const PointDataOptions& data,
                                         bool normals, const MachineOptions& machine,
                                         const PrintOptions& printing);
+
+// The same with the simplex attribute `track_id`: by the track that a piece was in at the step before. The
+// whole surface is in memory.
+std::unique_ptr<Frames> frames_with_tracks(const FieldOptions& input, double isovalue,
+                                           const SurfaceOptions& surface, const PointDataOptions& data,
+                                           bool normals, const MachineOptions& machine,
+                                           const PrintOptions& printing);
 
 // Of a mesh file, indexed.
 std::unique_ptr<Frames> frames_of_mesh(const std::string& path, const SurfaceOptions& surface,
