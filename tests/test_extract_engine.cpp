@@ -46,14 +46,17 @@ std::vector<Instructions> instructions_here() {
   return here;
 }
 
-// By all methods, with all instructions, on one thread and on several with units as small as they get.
+// By all methods, with all instructions, on one thread and on several with units as small as they get; by one
+// also in the memory of the extraction before and with the ranges it noted down.
 template <class T, int D>
 void expect_reference_on_every_path(const FieldView<const T, D>& field, double isovalue,
                                     ExtractOptions options = {}) {
   for (const Method method : {Method::hull, Method::component, Method::simplicial}) {
     options.method = method;
     const SimplexMesh<D> expected = extract_reference(field, isovalue, options);
-    for (const Instructions instructions : instructions_here())
+    for (const Instructions instructions : instructions_here()) {
+      Workspace workspace;
+      FieldRanges ranges;
       for (const int threads : {1, 3}) {
         SCOPED_TRACE(testing::Message() << "method " << static_cast<int>(method) << ", instructions "
                                         << static_cast<int>(instructions) << ", threads " << threads);
@@ -63,8 +66,18 @@ void expect_reference_on_every_path(const FieldView<const T, D>& field, double i
         const Status status = extract_with(field, isovalue, options, engine_options, mesh);
         ASSERT_TRUE(status) << status.error().message;
         expect_same(mesh, expected);
+        if (method == Method::hull) {
+          ExtractOptions again = options;
+          again.workspace = &workspace;
+          again.ranges = &ranges;
+          for (int times = 0; times < 2; ++times) {
+            ASSERT_TRUE(extract_with(field, isovalue, again, engine_options, mesh));
+            expect_same(mesh, expected);
+          }
+        }
         if (testing::Test::HasFailure()) return;
       }
+    }
   }
 }
 
@@ -287,6 +300,58 @@ TEST(Engine, into_a_used_mesh) {
   }
   ASSERT_TRUE(extract_into(large.view, 1e9, options, mesh));
   EXPECT_EQ(mesh.simplex_count(), 0u);
+}
+
+// Ranges noted down at one isovalue serve others; those of another field do not.
+TEST(Engine, ranges_of_the_same_field_only) {
+  FieldRanges ranges;
+  Workspace workspace;
+  ExtractOptions options;
+  options.ranges = &ranges;
+  options.workspace = &workspace;
+  const auto smooth = check::make_field<float, 3>(
+      check::box_grid<3>(70, -1, 1), [](const auto& p) { return p[0] * p[0] + 2 * p[1] * p[1] - p[2]; });
+  auto other = smooth;
+  other.view.samples = other.samples.data();
+  for (float& sample : other.samples) sample = -sample;
+  for (const Inside inside : {Inside::above, Inside::below})
+    for (const auto& view : {smooth.view, other.view, smooth.view})
+      for (const double isovalue : {0.5, -0.25, 0.0, 0.75, 100.0}) {
+        options.inside = inside;
+        SimplexMesh<3> mesh;
+        ASSERT_TRUE(extract_into(view, isovalue, options, mesh));
+        expect_same(mesh, extract_reference(view, isovalue, options));
+      }
+  // Changed samples are seen after `clear`; a field of another type or dimension in the same memory at once.
+  other.samples[70 * 70 * 35 + 70 * 35 + 35] = 9;
+  ranges.clear();
+  SimplexMesh<3> mesh;
+  ASSERT_TRUE(extract_into(other.view, 0.5, options, mesh));
+  expect_same(mesh, extract_reference(other.view, 0.5, options));
+  const auto slice = other.view.at_index(2, 35);
+  SimplexMesh<2> lines;
+  ASSERT_TRUE(extract_into(slice, 0.5, options, lines));
+  expect_same(lines, extract_reference(slice, 0.5, options));
+}
+
+TEST(Engine, several_isovalues_at_once) {
+  const auto field = noise<float, 3>({70, 9, 8});
+  const std::vector<double> isovalues{-10, 0, 0, 30, 1e9};
+  const auto meshes = extract(field.view, std::span<const double>(isovalues));
+  ASSERT_TRUE(meshes);
+  ASSERT_EQ(meshes->size(), isovalues.size());
+  std::uint64_t bytes = 0;
+  for (std::size_t i = 0; i < isovalues.size(); ++i) {
+    expect_same((*meshes)[i], extract_reference(field.view, isovalues[i]));
+    bytes += (*meshes)[i].positions.bytes() + (*meshes)[i].edges.size() * 8 + (*meshes)[i].simplices.bytes();
+  }
+  ExtractOptions options;
+  options.memory_limit = bytes;
+  EXPECT_TRUE(extract(field.view, std::span<const double>(isovalues), options));
+  options.memory_limit = bytes - 1;
+  const auto too_large = extract(field.view, std::span<const double>(isovalues), options);
+  ASSERT_FALSE(too_large);
+  EXPECT_EQ(too_large.error().code, Code::out_of_memory);
 }
 
 TEST(Engine, memory_limit_says_what_is_needed) {

@@ -6,6 +6,10 @@
 #include "hyperiso/mesh.hpp"
 #include "hyperiso/progress.hpp"
 
+#include <memory>
+#include <span>
+#include <vector>
+
 namespace hyperiso {
 
 /// Which samples are `+`: the side that the surface's table keeps together where a cell is ambiguous
@@ -38,6 +42,44 @@ enum class Cut {
 
 enum class Precision { f32, f64 };
 
+/// Memory that an extraction takes besides its mesh, kept for the next one: that saves the system clearing it
+/// again. Some bytes per row of samples and per active cell, until it is destroyed. For one call at a time.
+class Workspace {
+ public:
+  Workspace();
+  Workspace(Workspace&&) noexcept;
+  Workspace& operator=(Workspace&&) noexcept;
+  ~Workspace();
+
+  struct State; ///< the library's own
+  State& state() { return *state_; }
+
+ private:
+  std::unique_ptr<State> state_;
+};
+
+/// The least and the greatest of every 64 samples along axis 0 of a field, for one isovalue after another:
+/// the first extraction notes them down as it reads, the next ones read only where their surfaces may be, and
+/// give the same bytes. Two samples for every 64 (3 % of the field). Belongs to one field: another one (other
+/// memory, shape or type) is noted down anew; after a change of the samples, call `clear`. Fields whose
+/// samples along axis 0 do not lie one after the other are read whole every time, and so are those of more
+/// than five dimensions. For one call at a time.
+class FieldRanges {
+ public:
+  FieldRanges();
+  FieldRanges(FieldRanges&&) noexcept;
+  FieldRanges& operator=(FieldRanges&&) noexcept;
+  ~FieldRanges();
+
+  void clear(); ///< forgets the field
+
+  struct State; ///< the library's own
+  State& state() { return *state_; }
+
+ private:
+  std::unique_ptr<State> state_;
+};
+
 struct ExtractOptions {
   Method method = Method::hull;
   Cut cut = Cut::midpoints; ///< of Method::barycentric
@@ -47,6 +89,8 @@ struct ExtractOptions {
   std::uint64_t memory_limit = UINT64_MAX; ///< bytes the surface may take
   int threads = 0;                         ///< 0: one per processor; the result is the same for any number
   Progress progress = {};
+  Workspace* workspace = nullptr; ///< for who extracts again and again
+  FieldRanges* ranges = nullptr;  ///< for who extracts the same field again and again
 };
 
 /// Builds the isosurface of `field` as a welded, oriented mesh of (D-1)-simplices.
@@ -77,5 +121,12 @@ Result<SimplexMesh<D>> extract(const FieldView<const T, D>& field, double isoval
 template <class T, int D>
 Status extract_into(const FieldView<const T, D>& field, double isovalue, const ExtractOptions& options,
                     SimplexMesh<D>& mesh);
+
+/// The surfaces at several isovalues, in their order. The field is read whole once, and once more where the
+/// surfaces are. `memory_limit` is for all of them.
+template <class T, int D>
+Result<std::vector<SimplexMesh<D>>> extract(const FieldView<const T, D>& field,
+                                            std::span<const double> isovalues,
+                                            const ExtractOptions& options = {});
 
 } // namespace hyperiso

@@ -7,11 +7,46 @@
 #include "extract/slab_engine.hpp"
 #include "extract/units.hpp"
 #include "extract/vertex_output.hpp"
+#include "extract/workspace.hpp"
 
 #include <atomic>
 
 namespace hyperiso {
 namespace {
+
+// A unit's vertices that wait for their numbers.
+struct Pending {
+  std::size_t unit;
+  std::uint64_t written; // of them, so far
+  VertexBatch batch;
+};
+
+template <int D>
+struct Worker {
+  void* engine;
+  Cells<D> cells;
+  ScanMemory memory;
+  MaskWindow window;              // if units are not linked
+  std::vector<Pending> pending;   // the last is that of the current unit
+  std::vector<VertexBatch> spare; // empty, to be used again
+
+  // What it found. The memory is used again.
+  void forget() {
+    cells.run_count = cells.code_count = 0;
+    cells.restarts.clear();
+    window.last_layer = -1;
+    pending.clear();
+  }
+};
+
+// What an extraction leaves to the next.
+template <int D>
+struct EngineMemory final : Workspace::State::Memory {
+  VertexNumbers numbers;
+  std::vector<MaskWindow> windows; // if units are linked: one per block
+  std::vector<Worker<D>> workers;
+  std::vector<UnitCells> unit_cells;
+};
 
 template <int D, Method M>
 class Engine {
@@ -22,17 +57,20 @@ class Engine {
         grid_(samples.dims), workers_(worker_count(options.threads)),
         kernels_(kernels<D, M>(engine_options.instructions)),
         row_kernels_(row_kernels(samples.test.type, engine_options.instructions)),
-        table_(march_table<D>(options.method, form)) {}
+        table_(march_table<D>(options.method, form)),
+        memory_(options.workspace ? options.workspace->state().of_type<EngineMemory<D>>() : own_memory_) {}
 
   // Of the whole field.
   Status run() {
     plan_ = plan_units(grid_, workers_, engine_options_.unit_samples);
     prepare_numbers();
+    prepare_ranges();
     if (Status status = scan(); !status) return status;
     if (found_missing_) {
       present_ = find_present_cells(samples_, grid_, row_kernels_, workers_);
       if (Status status = scan(); !status) return status;
     }
+    if (ranges_.low) options_.ranges->state().complete = true;
     number_planes();
     return emit();
   }
@@ -44,49 +82,34 @@ class Engine {
   static constexpr double scan_share = 0.7;
 
   void prepare_numbers() {
-    numbers_.plane_rows = plan_.linked && plan_.blocks > 1 ? grid_.halo : grid_.layer_rows;
+    memory_.numbers.plane_rows = plan_.linked && plan_.blocks > 1 ? grid_.halo : grid_.layer_rows;
     // A plane's vertices are counted in 32 bits.
     const auto most_in_row = static_cast<std::uint64_t>(grid_.dims[0]) * Edges::directions;
-    if (static_cast<std::uint64_t>(numbers_.plane_rows) > UINT32_MAX / most_in_row) numbers_.plane_rows = 1;
-    numbers_.row_first.reset(static_cast<std::size_t>(grid_.rows) * Edges::directions);
-    numbers_.plane_first.reset(static_cast<std::size_t>(grid_.rows / numbers_.plane_rows));
+    if (static_cast<std::uint64_t>(memory_.numbers.plane_rows) > UINT32_MAX / most_in_row)
+      memory_.numbers.plane_rows = 1;
+    memory_.numbers.row_first.reset(static_cast<std::size_t>(grid_.rows) * Edges::directions);
+    memory_.numbers.plane_first.reset(static_cast<std::size_t>(grid_.rows / memory_.numbers.plane_rows));
+  }
+
+  void prepare_ranges() {
+    if (!options_.ranges || samples_.strides[0] != 1 || !samples_.levels.empty()) return;
+    FieldRanges::State& ranges = options_.ranges->state();
+    ranges_.known = ranges.hold(samples_);
+    ranges_.low = static_cast<std::byte*>(ranges.low.data());
+    ranges_.high = static_cast<std::byte*>(ranges.high.data());
   }
 
   // Phase 1 -----------------------------------------------------------------------------------------------
-
-  // A unit's vertices that wait for their numbers.
-  struct Pending {
-    std::size_t unit;
-    std::uint64_t written; // of them, so far
-    VertexBatch batch;
-  };
-  struct Worker {
-    Engine* engine;
-    Cells<D> cells;
-    ScanMemory memory;
-    MaskWindow window;              // if units are not linked
-    std::vector<Pending> pending;   // the last is that of the current unit
-    std::vector<VertexBatch> spare; // empty, to be used again
-
-    // What it found. The memory is used again.
-    void forget() {
-      cells.run_count = 0;
-      cells.restarts.clear();
-      cells.code_count = 0;
-      window.last_layer = -1;
-      pending.clear();
-    }
-  };
 
   Status scan() {
     const std::size_t units = plan_.units.size();
     ledger_.emplace(units);
     output_.emplace(mesh_, options_.precision == Precision::f64, options_.keep_edges, options_.memory_limit);
-    unit_cells_.assign(units, {});
-    windows_.resize(plan_.linked ? plan_.blocks : 0);
-    for (MaskWindow& window : windows_) window.last_layer = plan_.units.front().first_layer - 1;
-    worker_state_.resize(static_cast<std::size_t>(workers_));
-    for (Worker& worker : worker_state_) worker.forget();
+    memory_.unit_cells.assign(units, {});
+    memory_.windows.resize(plan_.linked ? plan_.blocks : 0);
+    for (MaskWindow& window : memory_.windows) window.last_layer = plan_.units.front().first_layer - 1;
+    memory_.workers.resize(static_cast<std::size_t>(workers_));
+    for (Worker<D>& worker : memory_.workers) worker.forget();
     vertices_ = simplices_ = active_cells_ = 0;
     found_missing_ = cancelled_ = false;
     next_unit_ = 0;
@@ -101,7 +124,7 @@ class Engine {
     if (cancelled_) return cancelled();
     if (found_missing_) return {};
     if (!report(scan_share)) return cancelled();
-    for (const UnitCells& unit : unit_cells_) {
+    for (const UnitCells& unit : memory_.unit_cells) {
       vertices_ += unit.vertices;
       simplices_ += unit.simplices;
       active_cells_ += unit.active_cells;
@@ -110,7 +133,7 @@ class Engine {
   }
 
   void scan_units(std::size_t worker_number) {
-    Worker& worker = worker_state_[worker_number];
+    Worker<D>& worker = memory_.workers[worker_number];
     worker.engine = this;
     for (std::size_t unit; (unit = next_unit_++) < plan_.units.size();) {
       if (const auto before = plan_.before(unit); before && !ledger_->wait_for(*before)) return;
@@ -127,15 +150,15 @@ class Engine {
     }
   }
 
-  bool scan_unit(Worker& worker, std::size_t worker_number, std::size_t unit) {
+  bool scan_unit(Worker<D>& worker, std::size_t worker_number, std::size_t unit) {
     worker.pending.push_back({unit, 0, {}});
     if (!worker.spare.empty()) {
       worker.pending.back().batch = std::move(worker.spare.back());
       worker.spare.pop_back();
     }
-    UnitCells& result = unit_cells_[unit];
+    UnitCells& result = memory_.unit_cells[unit];
     result.worker = worker_number;
-    MaskWindow& window = plan_.linked ? windows_[plan_.units[unit].window] : worker.window;
+    MaskWindow& window = plan_.linked ? memory_.windows[plan_.units[unit].window] : worker.window;
     ScanJob<D> job{&samples_,
                    &grid_,
                    &row_kernels_,
@@ -144,14 +167,15 @@ class Engine {
                    options_.precision == Precision::f64,
                    options_.keep_edges,
                    first_row_,
-                   &numbers_,
+                   ranges_,
+                   &memory_.numbers,
                    plan_.units[unit],
                    &window,
                    &worker.memory,
                    &worker.cells,
                    &worker.pending.back().batch,
                    &worker,
-                   [](void* owner) { write_current(*static_cast<Worker*>(owner)); },
+                   [](void* owner) { write_current(*static_cast<Worker<D>*>(owner)); },
                    &result,
                    false};
     kernels_.scan(job);
@@ -161,13 +185,13 @@ class Engine {
   }
 
   // Writes the vertices of the current unit that there are so far, if all before them are counted.
-  static void write_current(Worker& worker) {
+  static void write_current(Worker<D>& worker) {
     Pending& current = worker.pending.back();
-    const auto first = worker.engine->ledger_->first_vertex(current.unit);
-    if (first) worker.engine->write(*first, current);
+    const auto first = static_cast<Engine*>(worker.engine)->ledger_->first_vertex(current.unit);
+    if (first) static_cast<Engine*>(worker.engine)->write(*first, current);
   }
   // The same for all its units, done with those.
-  void write_known(Worker& worker) {
+  void write_known(Worker<D>& worker) {
     std::erase_if(worker.pending, [&](Pending& pending) {
       const auto first = ledger_->first_vertex(pending.unit);
       if (!first) return false;
@@ -212,9 +236,9 @@ class Engine {
       const Unit& unit = plan_.units[number];
       const std::uint64_t first = first_vertex_ + *ledger_->first_vertex(number);
       for (std::int64_t layer = unit.first_layer; layer < unit.end_layer; ++layer)
-        for (std::int64_t row = unit.first_row; row < unit.end_row; row += numbers_.plane_rows)
-          numbers_.plane_first[static_cast<std::size_t>((layer * grid_.layer_rows + row) /
-                                                        numbers_.plane_rows)] += first;
+        for (std::int64_t row = unit.first_row; row < unit.end_row; row += memory_.numbers.plane_rows)
+          memory_.numbers.plane_first[static_cast<std::size_t>((layer * grid_.layer_rows + row) /
+                                                               memory_.numbers.plane_rows)] += first;
     }
   }
 
@@ -222,13 +246,14 @@ class Engine {
 
   Status emit() {
     std::vector<std::uint64_t> first_simplex{0};
-    for (const UnitCells& unit : unit_cells_) first_simplex.push_back(first_simplex.back() + unit.simplices);
+    for (const UnitCells& unit : memory_.unit_cells)
+      first_simplex.push_back(first_simplex.back() + unit.simplices);
     std::atomic<std::size_t> next = 0;
     std::atomic<bool> stopped = false;
     run_workers(workers_, [&](int worker) {
-      for (std::size_t unit; !stopped && (unit = next++) < unit_cells_.size();) {
-        emit_unit(unit_cells_[unit], first_simplex[unit]);
-        const double share = static_cast<double>(unit + 1) / static_cast<double>(unit_cells_.size());
+      for (std::size_t unit; !stopped && (unit = next++) < memory_.unit_cells.size();) {
+        emit_unit(memory_.unit_cells[unit], first_simplex[unit]);
+        const double share = static_cast<double>(unit + 1) / static_cast<double>(memory_.unit_cells.size());
         if (worker == 0 && !report(scan_share + (1 - scan_share) * share)) stopped = true;
       }
     });
@@ -240,7 +265,8 @@ class Engine {
     if (unit.simplices == 0) return;
     const std::size_t index_bytes = wide_indices_ ? sizeof(std::uint64_t) : sizeof(std::uint32_t);
     auto* corners = static_cast<std::byte*>(mesh_.simplices.data()) + first_simplex * D * index_bytes;
-    const EmitJob<D> job{&grid_, &table_, &numbers_, &worker_state_[unit.worker].cells, &unit, corners, true};
+    const EmitJob<D> job{&grid_,  &table_, &memory_.numbers, &memory_.workers[unit.worker].cells, &unit,
+                         corners, true};
     wide_indices_ ? kernels_.emit_wide(job) : kernels_.emit_narrow(job);
   }
 
@@ -253,15 +279,14 @@ class Engine {
   const Kernels<D, M> kernels_;
   const RowKernels row_kernels_;
   const MarchTable<D>& table_;
+  EngineMemory<D> own_memory_; // if there is none to use again
+  EngineMemory<D>& memory_;
 
   UnitPlan<D> plan_;               // of the layers to scan
   std::int64_t first_row_ = 0;     // number of row 0 in the whole field
   std::uint64_t first_vertex_ = 0; // vertices before those of these layers
   PresentCells present_;
-  VertexNumbers numbers_;
-  std::vector<MaskWindow> windows_; // if units are linked: one per block
-  std::vector<Worker> worker_state_;
-  std::vector<UnitCells> unit_cells_;
+  NotedRanges ranges_;
   std::optional<Ledger> ledger_;
   std::optional<VertexOutput> output_;
   std::atomic<std::size_t> next_unit_ = 0;
@@ -336,14 +361,14 @@ class SlabRun final : private Window<D>, private Engine<D, M>, public SlabEngine
 
   // The upper layer becomes the lower one.
   void forget_lower_layer() {
-    for (MaskWindow& masks : this->windows_) masks.swap_layers();
+    for (MaskWindow& masks : this->memory_.windows) masks.swap_layers();
     const auto move_up = [](auto& numbers, int from, int to) {
       const std::size_t layer = numbers.size() / 3;
       std::copy_n(numbers.data() + static_cast<std::size_t>(from) * layer, layer,
                   numbers.data() + static_cast<std::size_t>(to) * layer);
     };
-    move_up(this->numbers_.row_first, 2, 1);
-    move_up(this->numbers_.plane_first, 2, 1);
+    move_up(this->memory_.numbers.row_first, 2, 1);
+    move_up(this->memory_.numbers.plane_first, 2, 1);
     if (this->present_.all()) return;
     move_up(this->present_.words, 1, 0);
     move_up(this->present_.words, 2, 1);

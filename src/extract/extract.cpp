@@ -25,6 +25,11 @@ Status check_dimension(Method method, int dimension) {
                     ", simplicial in up to ", highest_simplicial_dimension)};
 }
 
+// What counts against the limit of memory.
+std::uint64_t memory_of(const Mesh& mesh) {
+  return mesh.positions.bytes() + mesh.edges.size() * sizeof(GridEdge) + mesh.simplices.bytes();
+}
+
 } // namespace
 
 template <class T, int D>
@@ -50,10 +55,35 @@ Result<SimplexMesh<D>> extract(const FieldView<const T, D>& field, double isoval
   return mesh;
 }
 
+template <class T, int D>
+Result<std::vector<SimplexMesh<D>>> extract(const FieldView<const T, D>& field,
+                                            std::span<const double> isovalues,
+                                            const ExtractOptions& options) {
+  ExtractOptions each = options;
+  Workspace workspace;
+  FieldRanges ranges;
+  if (!each.workspace) each.workspace = &workspace;
+  if (!each.ranges && isovalues.size() > 1) each.ranges = &ranges;
+  std::vector<SimplexMesh<D>> meshes;
+  for (std::size_t i = 0; i < isovalues.size(); ++i) {
+    if (options.progress)
+      each.progress = [&](double share) {
+        return options.progress((static_cast<double>(i) + share) / static_cast<double>(isovalues.size()));
+      };
+    Result<SimplexMesh<D>> mesh = extract(field, isovalues[i], each);
+    if (!mesh) return mesh.error();
+    each.memory_limit -= std::min(each.memory_limit, memory_of(*mesh));
+    meshes.push_back(std::move(*mesh));
+  }
+  return meshes;
+}
+
 #define HYPERISO_INSTANTIATE_EXTRACT(T, D)                                                                   \
   template Status extract_into(const FieldView<const T, D>&, double, const ExtractOptions&,                  \
                                SimplexMesh<D>&);                                                             \
-  template Result<SimplexMesh<D>> extract(const FieldView<const T, D>&, double, const ExtractOptions&);
+  template Result<SimplexMesh<D>> extract(const FieldView<const T, D>&, double, const ExtractOptions&);      \
+  template Result<std::vector<SimplexMesh<D>>> extract(const FieldView<const T, D>&,                         \
+                                                       std::span<const double>, const ExtractOptions&);
 HYPERISO_FOR_EACH_SAMPLE_TYPE(HYPERISO_INSTANTIATE_EXTRACT, 2)
 HYPERISO_FOR_EACH_SAMPLE_TYPE(HYPERISO_INSTANTIATE_EXTRACT, 3)
 HYPERISO_FOR_EACH_SAMPLE_TYPE(HYPERISO_INSTANTIATE_EXTRACT, 4)

@@ -32,6 +32,11 @@ struct RowKernels {
   // Which samples are inside, row after row, and for each row 0 if none is, 255 if all are, 1 otherwise.
   // Returns whether one of them is NaN.
   bool (*inside)(const SampleRows& rows, const InsideTest& test, std::uint64_t* words, std::uint8_t* uniform);
+  // The least and the greatest of every 64 of a row, row after row; both NaN if one of them is.
+  void (*ranges)(const SampleRows& rows, std::byte* low, std::byte* high);
+  // As `inside`, but reads samples only where their range does not decide.
+  bool (*inside_by_ranges)(const SampleRows& rows, const InsideTest& test, const std::byte* low,
+                           const std::byte* high, std::uint64_t* words, std::uint8_t* uniform);
   // Which of them are not NaN.
   void (*present)(const std::byte* row, std::int64_t count, std::uint64_t* words);
   // Copies samples that lie `stride` apart next to each other.
@@ -119,6 +124,12 @@ class MaskWindow {
   std::array<Array<std::uint8_t>, 2> uniform_;
 };
 
+// Where the range of every 64 samples is noted down (FieldRanges), or found. Nowhere if `low` is null.
+struct NotedRanges {
+  std::byte *low = nullptr, *high = nullptr;
+  bool known = false; // found
+};
+
 // What a worker needs while it scans, kept from unit to unit.
 struct ScanMemory {
   Array<std::uint64_t> edges_exist, cells_exist; // of a row
@@ -183,6 +194,7 @@ struct ScanJob {
   const MarchTable<D>* table;
   bool wide_positions, keep_edges;
   std::int64_t first_row; // number of row 0 in the whole field, for the numbers of edges
+  NotedRanges ranges;
   VertexNumbers* numbers;
 
   Unit unit;

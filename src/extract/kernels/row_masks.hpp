@@ -264,6 +264,89 @@ bool inside(const SampleRows& rows, const InsideTest& test, std::uint64_t* words
                     : inside_rows<T, false>(rows, threshold, words, uniform);
 }
 
+// The least and the greatest of 64 samples; both NaN if one of them is.
+template <class T>
+void find_range(const T* samples, T& low, T& high) {
+  constexpr int lanes = 64 / sizeof(T); // compilers make vectors of these loops
+  T least[lanes], greatest[lanes];
+  std::copy_n(samples, lanes, least);
+  std::copy_n(samples, lanes, greatest);
+  for (int i = lanes; i < 64; i += lanes)
+    for (int lane = 0; lane < lanes; ++lane) {
+      const T sample = samples[i + lane];
+      least[lane] = sample < least[lane] ? sample : least[lane];
+      greatest[lane] = sample > greatest[lane] ? sample : greatest[lane];
+    }
+  for (int half = lanes / 2; half > 0; half /= 2)
+    for (int lane = 0; lane < half; ++lane) {
+      least[lane] = std::min(least[lane], least[lane + half]);
+      greatest[lane] = std::max(greatest[lane], greatest[lane + half]);
+    }
+  low = least[0], high = greatest[0];
+  if constexpr (can_miss<T>) {
+    std::uint64_t missing = 0;
+    for (int lane = 0; lane < 64; lane += 2 * Lanes<T>::count)
+      missing |= Lanes<T>::either_missing(samples + lane, samples + lane + Lanes<T>::count);
+    if (missing != 0) low = high = std::numeric_limits<T>::quiet_NaN();
+  }
+}
+
+template <class T>
+void ranges(const SampleRows& rows, std::byte* low_, std::byte* high_) {
+  auto* low = reinterpret_cast<T*>(low_);
+  auto* high = reinterpret_cast<T*>(high_);
+  const std::byte* row = rows.first;
+  for (std::int64_t r = 0; r < rows.rows; ++r, row += rows.bytes_apart) {
+    const auto* samples = reinterpret_cast<const T*>(row);
+    for (std::int64_t word = 0; word < rows.count / 64; ++word)
+      find_range(samples + 64 * word, *low++, *high++);
+    if (rows.count % 64 == 0) continue;
+    LastSamples<T> last(samples, rows.count);
+    std::fill(last.samples + last.rest, last.samples + 64, last.samples[0]);
+    find_range(last.samples, *low++, *high++);
+  }
+}
+
+template <class T, bool Above>
+bool inside_rows_by_ranges(const SampleRows& rows, T threshold, const T* low, const T* high,
+                           std::uint64_t* words, std::uint8_t* uniform) {
+  std::uint64_t missing = 0;
+  const std::byte* row = rows.first;
+  const std::int64_t row_words = (rows.count + 63) / 64;
+  const std::uint64_t last_bits = ~std::uint64_t{0} >> (64 * row_words - rows.count);
+  for (std::int64_t r = 0; r < rows.rows; ++r, row += rows.bytes_apart) {
+    const auto* samples = reinterpret_cast<const T*>(row);
+    std::uint64_t any = 0, all = ~std::uint64_t{0};
+    for (std::int64_t word = 0; word < row_words; ++word, ++low, ++high) {
+      const std::uint64_t bits = word == row_words - 1 ? last_bits : ~std::uint64_t{0};
+      std::uint64_t inside; // no comparison with NaN holds
+      if (Above ? *high < threshold : *low > threshold)
+        inside = 0;
+      else if (Above ? *low >= threshold : *high <= threshold)
+        inside = bits;
+      else if (bits == ~std::uint64_t{0})
+        inside = inside_word<T, Above>(samples + 64 * word, threshold, missing);
+      else
+        inside =
+            inside_word<T, Above>(LastSamples<T>(samples, rows.count).samples, threshold, missing) & bits;
+      any |= inside, all &= inside | ~bits;
+      *words++ = inside;
+    }
+    uniform[r] = any == 0 ? 0 : ~all == 0 ? 255 : 1;
+  }
+  return missing != 0;
+}
+
+template <class T>
+bool inside_by_ranges(const SampleRows& rows, const InsideTest& test, const std::byte* low_,
+                      const std::byte* high_, std::uint64_t* words, std::uint8_t* uniform) {
+  const auto threshold = test.threshold_as<T>();
+  const auto* low = reinterpret_cast<const T*>(low_);
+  const auto* high = reinterpret_cast<const T*>(high_);
+  return test.above ? inside_rows_by_ranges<T, true>(rows, threshold, low, high, words, uniform)
+                    : inside_rows_by_ranges<T, false>(rows, threshold, low, high, words, uniform);
+}
+
 template <class T>
 std::uint64_t present_word([[maybe_unused]] const T* samples) {
   std::uint64_t missing = 0;
@@ -305,7 +388,7 @@ void load(const RowPair* pairs, std::size_t pair_bytes, const std::uint32_t* pai
 RowKernels row_kernels_here(SampleType type) {
   return visit_sample_type(type, [](auto sample) {
     using T = decltype(sample);
-    return RowKernels{inside<T>, present<T>, gather<T>, load<T>};
+    return RowKernels{inside<T>, ranges<T>, inside_by_ranges<T>, present<T>, gather<T>, load<T>};
   });
 }
 

@@ -38,6 +38,7 @@ class Scan {
       if (!fill_masks(layer, unit_.first_row - halo(), unit_.first_row)) return;
       const bool complete = for_each_strip(layer, unit_.first_row, unit_.end_row, [&](std::int64_t rows) {
         if (!fill_strip(rows)) return false;
+        note_ranges(rows);
         examine_strip(rows);
         return true;
       });
@@ -136,26 +137,40 @@ class Scan {
     std::uint64_t* masks = window_.mask(parity(), window_row_);
     std::uint8_t* uniform = window_.uniform(parity(), window_row_);
     const InsideTest& test = samples_.test_in_layer(index_[D - 1]);
-    const auto size = static_cast<std::int64_t>(samples_.sample_size);
-    const auto bytes_apart = D > 2 ? samples_.strides[1] * size : 0;
-    const auto& inside = job_.row_kernels->inside;
     bool missing = false;
-    if (samples_.strides[0] == 1)
-      missing =
-          inside({row_samples_, rows, bytes_apart, grid_.dims[0], next_strip(rows)}, test, masks, uniform);
-    else
+    if (samples_.strides[0] == 1) {
+      const SampleRows strip{row_samples_, rows, row_bytes_apart(), grid_.dims[0], next_strip(rows)};
+      const NotedRanges& ranges = job_.ranges;
+      missing = ranges.known ? job_.row_kernels->inside_by_ranges(strip, test, ranges.low + first_range(),
+                                                                  ranges.high + first_range(), masks, uniform)
+                             : job_.row_kernels->inside(strip, test, masks, uniform);
+    } else {
+      auto* gathered = static_cast<std::byte*>(memory_.gathered.data());
       for (std::int64_t row = 0; row < rows; ++row) {
-        auto* gathered = static_cast<std::byte*>(memory_.gathered.data());
-        job_.row_kernels->gather(row_samples_ + row * bytes_apart, samples_.strides[0], grid_.dims[0],
+        job_.row_kernels->gather(row_samples_ + row * row_bytes_apart(), samples_.strides[0], grid_.dims[0],
                                  gathered);
-        missing |= inside({gathered, 1, 0, grid_.dims[0]}, test, masks + row * words_, uniform + row);
+        missing |= job_.row_kernels->inside({gathered, 1, 0, grid_.dims[0]}, test, masks + row * words_,
+                                            uniform + row);
       }
+    }
     if (test.never) { // a level beyond the range of the type
       std::fill_n(masks, rows * words_, 0);
       std::fill_n(uniform, rows, 0);
     }
     job_.found_missing = missing && job_.present->all();
     return !job_.found_missing;
+  }
+  // Notes down the ranges of the samples of the strip, while the cache has them.
+  void note_ranges(std::int64_t rows) const {
+    const NotedRanges& ranges = job_.ranges;
+    if (ranges.low == nullptr || ranges.known) return;
+    job_.row_kernels->ranges({row_samples_, rows, row_bytes_apart(), grid_.dims[0]},
+                             ranges.low + first_range(), ranges.high + first_range());
+  }
+  // In bytes.
+  std::int64_t first_range() const { return row_ * words_ * static_cast<std::int64_t>(samples_.sample_size); }
+  std::int64_t row_bytes_apart() const {
+    return D > 2 ? samples_.strides[1] * static_cast<std::int64_t>(samples_.sample_size) : 0;
   }
   // Where the next strip lies, in bytes from this one: rows of images follow each other as layers.
   std::int64_t next_strip(std::int64_t rows) const {
