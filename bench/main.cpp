@@ -1,10 +1,12 @@
 // Prints a table: what each workload costs, beside the roof measured in the same run, and what others need.
 //
-// All times are the fastest of the repetitions. "warm" extracts into a mesh that has the memory, "fresh" into
-// a new one; peers are compared with fresh. Select rows as in any Google Benchmark program:
+// All times are the fastest of the repetitions. "warm" extracts into a mesh that has the memory, with a
+// workspace, "fresh" into new ones; peers are compared with fresh, in three dimensions without the numbers of
+// grid edges, which they do not give either. Select rows as in any Google Benchmark program:
 // --benchmark_filter=REGEX.
 
 #include "clock.hpp"
+#include "jobs.hpp"
 #include "peers.hpp"
 #include "roof.hpp"
 #include "workload.hpp"
@@ -44,6 +46,7 @@ constexpr Column tracking_columns[] = {
     {"ratio", "track / stream", 2},
     {"step", "track ms per step pair", 2},
 };
+constexpr Column job_columns[] = {{"job", "ms", 2}, {"beside", "beside ms", 2}, {"ratio", "ratio", 2}};
 
 // The field of a workload; the last one is kept, for the rows of one workload follow each other.
 const Field& field_of(const Workload& workload, const SampleOptions& options) {
@@ -69,6 +72,9 @@ void time_peers(benchmark::State& state, const Workload& workload, const FieldVi
     state.counters["loop"] = clock.seconds() / fresh;
   }
   if constexpr (std::is_same_v<T, float> && D == 3) {
+    ExtractOptions alike = options;
+    alike.keep_edges = false;
+    fresh = fastest_seconds([&] { benchmark::DoNotOptimize(extract(field, isovalue, alike)); }, 40);
     const auto dims = field.dims();
     const Volume volume{field.samples,
                         {static_cast<int>(dims[0]), static_cast<int>(dims[1]), static_cast<int>(dims[2])}};
@@ -97,8 +103,11 @@ void run(benchmark::State& state, const Workload& workload, int threads) {
   options.method = workload.method;
   options.threads = threads;
 
+  ExtractOptions again = options;
+  Workspace workspace;
+  again.workspace = &workspace;
   SimplexMesh<D> mesh;
-  (void)extract_into(field, isovalue, options, mesh); // makes the tables and the memory
+  (void)extract_into(field, isovalue, again, mesh); // makes the tables and the memory
   const std::size_t input_bytes = static_cast<std::size_t>(field.grid.samples()) * sizeof(T);
   const std::size_t output_bytes =
       mesh.positions.bytes() + mesh.edges.size() * sizeof(GridEdge) + mesh.simplices.bytes();
@@ -111,7 +120,7 @@ void run(benchmark::State& state, const Workload& workload, int threads) {
     for (int repetition = 0;
          repetition < most_repetitions && (repetition < 3 || all.seconds() < least_seconds); ++repetition) {
       const Clock warm_clock;
-      (void)extract_into(field, isovalue, options, mesh);
+      (void)extract_into(field, isovalue, again, mesh);
       warm = std::min(warm, warm_clock.seconds());
       roof = std::min(roof, roof_seconds(field.samples, input_bytes, output.data(), output_bytes, threads));
       const Clock fresh_clock;
@@ -151,14 +160,16 @@ void run_workload(benchmark::State& state, const Workload& workload, int threads
   });
 }
 
-// Prints Markdown tables, a row when it is done: one of extraction, then one of tracking.
+// Prints Markdown tables, a row when it is done: of extraction, of tracking, and of other jobs.
 class TableReporter : public benchmark::BenchmarkReporter {
  public:
   bool ReportContext(const Context&) override { return true; }
   void ReportRuns(const std::vector<Run>& runs) override {
     for (const Run& row : runs) {
       const std::span<const Column> wanted =
-          row.counters.contains("tracking") ? std::span<const Column>(tracking_columns) : columns;
+          row.counters.contains("tracking") ? std::span<const Column>(tracking_columns)
+          : row.counters.contains("job")    ? std::span<const Column>(job_columns)
+                                            : std::span<const Column>(columns);
       if (wanted.data() != table_.data()) start(wanted);
       const std::string title = row.run_name.function_name;
       std::printf("| %s | %.0f |", title.substr(0, title.rfind(',')).c_str(),

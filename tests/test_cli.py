@@ -104,6 +104,22 @@ class Json(Case):
             self.assertIsInstance(found[key], int)
             self.assertGreater(found[key], 0)
 
+    def test_repetitions_change_nothing_but_the_time(self):
+        path = self.sample()
+        once, often = (self.ok("extract", path, "--iso", "0.4,0.5", "--repeat", times, "--json", "-o", times + ".ply")
+                       for times in ("1", "4"))
+        for a, b in zip(once.json()["surfaces"], often.json()["surfaces"]):
+            self.assertEqual(list(a), EXTRACT_KEYS)
+            for key in ("vertices", "simplices", "active_cells", "isovalue"):
+                self.assertEqual(a[key], b[key])
+        for iso in ("0.4", "0.5"):
+            self.assertEqual(*((self.folder / f"{times}_iso{iso}.ply").read_bytes() for times in ("1", "4")))
+        for wrong in ("0", "-1", "many", "1.5"):
+            self.assert_refused(2, "extract", path, "--iso", "0.5", "--repeat", wrong, words=["--repeat"])
+        before = self.files()
+        self.ok("extract", path, "--iso", "0.5", "--repeat", "3")
+        self.assertEqual(self.files(), before)
+
     def test_measure_has_exactly_these_keys(self):
         path = self.sample()
         found = self.ok("extract", path, "--iso", "0.5", "--json", "--measure").json()

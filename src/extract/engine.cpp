@@ -58,7 +58,8 @@ class Engine {
         kernels_(kernels<D, M>(engine_options.instructions)),
         row_kernels_(row_kernels(samples.test.type, engine_options.instructions)),
         table_(march_table<D>(options.method, form)),
-        memory_(options.workspace ? options.workspace->state().of_type<EngineMemory<D>>() : own_memory_) {}
+        memory_(options.workspace ? options.workspace->state().template of_dimension<D, EngineMemory<D>>()
+                                  : own_memory_) {}
 
   // Of the whole field.
   Status run() {

@@ -4,14 +4,15 @@
 // A field is rows of samples along axis 0. The engine marches over the rows twice: once over the samples,
 // once over what it noted down.
 //
-// Phase 1, scan (kernels/row_masks.hpp, scan.hpp, vertices.hpp). Each row of samples becomes a bit mask:
-// which samples are inside. The exclusive or of a row's mask with that of the row before it along an axis is
-// the set of crossed edges of that direction that end in the row; each becomes a vertex at once, while the
-// samples are in the cache. No index array leads from edges to vertices: the number of a vertex is that of
-// the first of its row and direction, which is noted down, plus the number of bits before its own. A cell is
-// active if its 2^(D-1) rows' masks, at x and x + 1, are neither all 0 nor all 1. The masks of a row of cells
-// are transposed into columns of labels; two neighbouring columns are a cell's code, and the codes of the
-// active cells go to a list, row by row.
+// Phase 1, scan (kernels/row_masks.hpp, scan.hpp, codes.hpp, vertices.hpp). The rows are taken in strips,
+// some along axis 1 at a time; while a strip is worked on, the next one is on its way from memory. Each row
+// of samples becomes a bit mask: which samples are inside. The exclusive or of a row's mask with that of the
+// row before it along an axis is the set of crossed edges of that direction that end in the row; each becomes
+// a vertex at once, while the samples are in the cache. No index array leads from edges to vertices: the
+// number of a vertex is that of the first of its row and direction, which is noted down, plus the number of
+// bits before its own. A cell is active if its 2^(D-1) rows' masks, at x and x + 1, are neither all 0 nor
+// all 1. The masks of a row of cells are transposed into columns of labels; two neighbouring columns are a
+// cell's code, and the codes of the active cells go to a list, row by row.
 //
 // Phase 2, emit (kernels/emit.hpp). The codes alone tell how the numbers of the vertices go on along a row of
 // cells (cell_edges.hpp has the numbering). A table (march_table.hpp) gives the simplices of a code; their
@@ -26,6 +27,10 @@
 //
 // Slabs (slab_engine.hpp). Two steps of a field are enough for the part of the surface between them: the same
 // passes over two layers, which go on with the masks and the vertex numbers of the layer before.
+//
+// Again and again (workspace.hpp). The scratch memory of an extraction may serve the next. For the next
+// isovalue on the same field, the first extraction notes down the range of the 64 samples of each word of the
+// masks: where the range has one label, the word is known without the samples.
 //
 // Only the functions on one row of samples know the sample type (samples.hpp). The loops are compiled once
 // for each set of instructions (kernels.hpp) and give the same bytes with each. The reference loop

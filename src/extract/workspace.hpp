@@ -8,21 +8,22 @@
 
 namespace hyperiso {
 
-// Of any kind: extractions that need the same kind use it again.
+// Of fields of any dimension: extractions of the same dimension use it again.
 struct Workspace::State {
   struct Memory {
     virtual ~Memory() = default;
   };
   std::unique_ptr<Memory> memory;
+  int dimension = 0; // whose it is
 
-  // The memory if it is of type M, or else a new one in its place.
-  template <class M>
-  M& of_type() {
-    if (auto* same = dynamic_cast<M*>(memory.get())) return *same;
-    auto made = std::make_unique<M>();
-    M& result = *made;
-    memory = std::move(made);
-    return result;
+  // That of dimension D: the memory there is, or a new one in its place.
+  template <int D, class DimensionMemory>
+  DimensionMemory& of_dimension() {
+    if (!memory || dimension != D) {
+      memory = std::make_unique<DimensionMemory>();
+      dimension = D;
+    }
+    return static_cast<DimensionMemory&>(*memory);
   }
 };
 

@@ -129,7 +129,8 @@ class EdgeQueue {
       write_positions(static_cast<float*>(batch.positions.data()) + batch.count * D);
     if (keep_edges_) {
       GridEdge* edges = batch.edges.data() + batch.count;
-      for (std::size_t i = 0; i < count_; ++i) edges[i] = groups_[group_[i]].edge + upper_[i];
+      const std::uint32_t *upper = upper_, *group = group_;
+      for (std::size_t i = 0; i < count_; ++i) edges[i] = groups_[group[i]].edge + upper[i];
     }
     batch.count += count_;
   }
@@ -164,10 +165,10 @@ class EdgeQueue {
     if (!samples_.levels.empty()) return compute_lifted_weights();
     const double isovalue = samples_.isovalue;
     // The formula of `crossing` where the difference is finite, as it always is but for infinite samples.
-    bool finite = true;
+    std::uint64_t infinite = 0; // as wide as the samples, for vectors
     for (std::size_t i = 0; i < count_; ++i)
-      finite &= std::abs(b[i] - a[i]) <= std::numeric_limits<double>::max();
-    if (finite)
+      infinite |= std::abs(b[i] - a[i]) <= std::numeric_limits<double>::max() ? 0 : 1;
+    if (infinite == 0)
       for (std::size_t i = 0; i < count_; ++i) b[i] = (isovalue - a[i]) / (b[i] - a[i]);
     else
       for (std::size_t i = 0; i < count_; ++i) b[i] = crossing(a[i], b[i], isovalue);
@@ -189,9 +190,12 @@ class EdgeQueue {
   void write_positions(Real* position) const {
     const double* x = samples_.coordinates[0].data();
     const double* weight = upper_values_;
-    for (std::size_t i = 0; i < count_; ++i, position += D) {
-      const Group& group = groups_[group_[i]];
-      const std::uint32_t at = upper_[i], start = at & group.varies;
+    // Positions are copied as bytes, so that the compiler takes them to change what is not in registers.
+    const Group* groups = groups_;
+    const std::uint32_t *uppers = upper_, *group_numbers = group_;
+    for (std::size_t i = 0, count = count_; i < count; ++i, position += D) {
+      const Group& group = groups[group_numbers[i]];
+      const std::uint32_t at = uppers[i], start = at & group.varies;
       const auto along = [&](int axis, std::uint32_t offset) {
         const double* lower = group.lower[M == Method::hull ? 0 : axis] + offset;
         return static_cast<Real>(lower[0] + weight[i] * (lower[1] - lower[0]));
