@@ -47,6 +47,12 @@ constexpr Column tracking_columns[] = {
     {"step", "track ms per step pair", 2},
 };
 constexpr Column job_columns[] = {{"job", "ms", 2}, {"beside", "beside ms", 2}, {"ratio", "ratio", 2}};
+constexpr Column slice_columns[] = {
+    {"cut", "M tetrahedra", 2},
+    {"triangles", "triangles a slice", 0},
+    {"rate", "M triangles/s", 1},
+    {"slices", "slices/s", 0},
+};
 
 // The field of a workload; the last one is kept, for the rows of one workload follow each other.
 const Field& field_of(const Workload& workload, const SampleOptions& options) {
@@ -168,6 +174,7 @@ class TableReporter : public benchmark::BenchmarkReporter {
     for (const Run& row : runs) {
       const std::span<const Column> wanted =
           row.counters.contains("tracking") ? std::span<const Column>(tracking_columns)
+          : row.counters.contains("slices") ? std::span<const Column>(slice_columns)
           : row.counters.contains("job")    ? std::span<const Column>(job_columns)
                                             : std::span<const Column>(columns);
       if (wanted.data() != table_.data()) start(wanted);

@@ -164,3 +164,18 @@ TEST(Transform, a_reflection_keeps_normals_pointing_outward) {
   }
   EXPECT_NEAR(volume / 6, 2.0 / 6, 1e-12);
 }
+
+// Normals turn by the inverse transpose: they stay perpendicular to a triangle whatever the map does to it.
+TEST(Transform, normals_stay_normal) {
+  Mesh mesh = make_mesh(3, 2, {0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 1, 2});
+  mesh.attributes.push_back(
+      {normal_attribute, Attribute::Location::vertex, 3, std::vector<double>{0, 0, 1, 0, 0, 1, 0, 0, 1}});
+  mesh.attributes.push_back({"speed", Attribute::Location::vertex, 1, std::vector<float>{1, 2, 3}});
+  transform(mesh, Affine{{2, 0, 1, 0.5, -3, 0, 1, 1, -1}, {5, 6, 7}}); // reflects, shears and stretches
+  const auto& normals = std::get<std::vector<double>>(mesh.attributes[0].values);
+  const auto area = measure(mesh)->vector_area;
+  const double length = std::hypot(area[0], area[1], area[2]);
+  for (std::size_t vertex = 0; vertex < 3; ++vertex)
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(normals[vertex * 3 + k], area[k] / length, 1e-12);
+  EXPECT_EQ(std::get<std::vector<float>>(mesh.attributes[1].values)[2], 3);
+}

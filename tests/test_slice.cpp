@@ -2,6 +2,7 @@
 
 #include "check.hpp"
 #include "hyperiso/interpolate.hpp"
+#include "hyperiso/interval.hpp"
 #include "hyperiso/slice.hpp"
 
 #include <cmath>
@@ -289,6 +290,51 @@ TEST(SliceIndex, gives_what_a_plain_slice_gives) {
   }
 }
 
+// The same for what is not a surface in space and time: volumes, surfaces in space, soups, attributes, chunks
+// of all sizes.
+TEST(SliceIndex, volumes_soups_and_attributes) {
+  const auto check = [](auto mesh, const auto& planes) {
+    std::vector<double> heights;
+    const auto D = static_cast<std::size_t>(mesh.dimension);
+    for (std::size_t vertex = 0; vertex < mesh.vertex_count(); ++vertex)
+      heights.push_back(mesh.positions[vertex * D] - 3 * mesh.positions[vertex * D + 1]);
+    std::vector<std::int32_t> numbers(mesh.simplex_count());
+    std::iota(numbers.begin(), numbers.end(), 0);
+    mesh.attributes = {{"height", Attribute::Location::vertex, 1, heights},
+                       {"number", Attribute::Location::simplex, 1, numbers}};
+    const SliceIndex index(mesh);
+    auto reused = *index.slice(mesh, planes.back());
+    for (const auto& plane : planes)
+      for (const bool welded : {true, false}) {
+        const SliceOptions options{.precision = Precision::f64, .welded = welded};
+        const auto expected = slice(mesh, plane, options);
+        ASSERT_TRUE(expected);
+        ASSERT_TRUE(index.slice_into(mesh, plane, options, reused));
+        EXPECT_GT(reused.simplex_count(), 0u);
+        expect_same_mesh(reused, *expected);
+        EXPECT_EQ(measure(reused)->bad_facets, 0u);
+        for (std::size_t number = 0; number < 2; ++number)
+          std::visit(
+              [&]<class Values>(Values values) {
+                auto others = std::get<Values>(expected->attributes[number].values);
+                std::ranges::sort(values);
+                std::ranges::sort(others);
+                EXPECT_TRUE(values == others);
+              },
+              reused.attributes[number].values);
+      }
+  };
+  const auto in_space = random_field<float, 3>({9, 8, 9}, 1000, 4);
+  const auto in_time = random_field<float, 4>({6, 6, 6, 5}, 1000, 4);
+  check(extracted(in_space, 0),
+        std::vector<Hyperplane<3>>{{{1, 2, -1}, 3.3}, {{0, 1, 0}, 2.5}, {{0, 0, 1}, 2.25}});
+  check(extracted(in_time, 0), std::vector<Hyperplane<4>>{{{1, 2, -1, 1}, 3.3}, {{0, 0, 0, 1}, 2.5}});
+  check(*interval(in_space.view, -300, 400),
+        std::vector<Hyperplane<3>>{{{1, 2, -1}, 3.3}, {{0, 1, 0}, 2.5}, {{0, 0, 1}, 2.25}});
+  const SimplexMesh<4> nothing;
+  EXPECT_EQ(SliceIndex<4>(nothing).slice(nothing, Hyperplane<4>::at(3, 0))->simplex_count(), 0u);
+}
+
 TEST(Slice, unwelded_simplices_are_the_welded_ones) {
   const auto surface = extracted(random_field<float, 4>({5, 5, 5, 5}, 9, 6), 0.5);
   const Hyperplane<4> plane{{1, 1, 2, 3}, 12};
@@ -345,6 +391,96 @@ TEST(Slice, volumes_give_volumes) {
     EXPECT_EQ(found->inverted_simplices, 0u);
     EXPECT_EQ(found->bad_facets, 0u);
     EXPECT_EQ(found->euler_characteristic, 1);
+  }
+}
+
+// The coefficients c with least sum of squares of row . c - value.
+std::vector<double> least_squares(const std::vector<std::vector<double>>& rows,
+                                  const std::vector<double>& values) {
+  const std::size_t n = rows[0].size();
+  std::vector<double> matrix(n * n), right(n), solution(n);
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    for (std::size_t i = 0; i < n; ++i) {
+      right[i] += rows[row][i] * values[row];
+      for (std::size_t k = 0; k < n; ++k) matrix[i * n + k] += rows[row][i] * rows[row][k];
+    }
+  const double whole = determinant(matrix, static_cast<int>(n)); // Cramer's rule
+  for (std::size_t k = 0; k < n; ++k) {
+    auto replaced = matrix;
+    for (std::size_t i = 0; i < n; ++i) replaced[i * n + k] = right[i];
+    solution[k] = determinant(replaced, static_cast<int>(n)) / whole;
+  }
+  return solution;
+}
+
+// Paper 000, figure 5: f = (x-1/2)^2 + (y-1/2)^2 + (z-1/2)^2 - c w - d has a sphere for w = const and a
+// paraboloid for x = const. Fitted to the vertices; what is left falls with the square of the grid's spacing.
+TEST(Slice, sphere_and_paraboloid_of_figure_5) {
+  constexpr double c = 0.1, d = 0.02, w = 0.437, x = 0.413;
+  std::array<double, 2> sphere_residual{}, paraboloid_residual{};
+  for (std::size_t fine = 0; fine < 2; ++fine) {
+    const auto field = make_field<double, 4>(box_grid<4>(fine ? 25 : 13, 0, 1), [&](const auto& p) {
+      double squared = 0;
+      for (std::size_t k = 0; k < 3; ++k) squared += (p[k] - 0.5) * (p[k] - 0.5);
+      return squared - c * p[3] - d;
+    });
+    const auto surface = extracted(field, 0, {.precision = Precision::f64});
+    const double h = fine ? 1. / 24 : 1. / 12;
+
+    const auto sphere = sliced(surface, Hyperplane<4>::at(3, w), {.precision = Precision::f64});
+    EXPECT_TRUE(measure(sphere)->closed);
+    std::vector<std::vector<double>> rows;
+    std::vector<double> values;
+    for (std::size_t vertex = 0; vertex < sphere.vertex_count(); ++vertex) {
+      const double* p = static_cast<const double*>(sphere.positions.data()) + vertex * 3;
+      rows.push_back({2 * p[0], 2 * p[1], 2 * p[2], 1});
+      values.push_back(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+    }
+    auto fit = least_squares(rows, values); // centre, radius^2 - centre^2
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(fit[k], 0.5, h * h);
+    EXPECT_NEAR(fit[3] + fit[0] * fit[0] + fit[1] * fit[1] + fit[2] * fit[2], c * w + d, h * h);
+    for (std::size_t row = 0; row < rows.size(); ++row)
+      sphere_residual[fine] =
+          std::max(sphere_residual[fine],
+                   std::abs(std::inner_product(fit.begin(), fit.end(), rows[row].begin(), -values[row])));
+
+    const auto paraboloid = sliced(surface, Hyperplane<4>::at(0, x), {.precision = Precision::f64});
+    rows.clear(), values.clear();
+    for (std::size_t vertex = 0; vertex < paraboloid.vertex_count(); ++vertex) {
+      const double* p = static_cast<const double*>(paraboloid.positions.data()) + vertex * 3;
+      rows.push_back({p[0] * p[0] + p[1] * p[1], p[0], p[1], 1});
+      values.push_back(c * p[2]);
+    }
+    fit = least_squares(rows, values);
+    EXPECT_NEAR(fit[0], 1, 20 * h * h);
+    EXPECT_NEAR(fit[1], -1, 20 * h * h);
+    EXPECT_NEAR(fit[2], -1, 20 * h * h);
+    EXPECT_NEAR(fit[3], 0.5 + (x - 0.5) * (x - 0.5) - d, 20 * h * h);
+    for (std::size_t row = 0; row < rows.size(); ++row)
+      paraboloid_residual[fine] =
+          std::max(paraboloid_residual[fine],
+                   std::abs(std::inner_product(fit.begin(), fit.end(), rows[row].begin(), -values[row])));
+  }
+  EXPECT_LT(sphere_residual[1], 0.4 * sphere_residual[0]);
+  EXPECT_LT(paraboloid_residual[1], 0.4 * paraboloid_residual[0]);
+  EXPECT_LT(sphere_residual[0], 1. / 144);
+  EXPECT_LT(paraboloid_residual[0], 1. / 144);
+}
+
+// No popping between steps: the area of a moving ball's slices, and its change, go on steadily.
+TEST(SliceIndex, area_of_a_moving_ball_is_smooth_in_time) {
+  const auto surface = extracted(moving_ball(), 0, {.precision = Precision::f64});
+  const SliceIndex<4> index(surface);
+  std::vector<double> areas;
+  constexpr int moments = 100;
+  for (int moment = 0; moment <= moments; ++moment)
+    areas.push_back(
+        measure(*index.slice(surface, Hyperplane<4>::at(3, 2 + static_cast<double>(moment) / moments)))
+            ->content);
+  for (std::size_t i = 1; i < areas.size(); ++i) {
+    EXPECT_NEAR(areas[i] / areas[i - 1], 1, 1e-3) << i;
+    if (i == 1) continue;
+    EXPECT_NEAR((areas[i] - 2 * areas[i - 1] + areas[i - 2]) / areas[i], 0, 1e-3) << i;
   }
 }
 

@@ -88,26 +88,31 @@ template <int D, int K>
 Result<SimplexMesh<D - 1, K - 1>> slice(const SimplexMesh<D, K>& mesh, const Hyperplane<D>& plane,
                                         const SliceOptions& options = {});
 
-/// Boxes around groups of simplices that lie together, for many cuts of one mesh: a cut then touches the
-/// groups that the plane meets.
+/// A mesh prepared for many cuts: its simplices in chunks that lie together, each with a box around it, the
+/// positions of its vertices and its edges, by which the chunks that a plane meets are cut without looking
+/// anywhere else.
 template <int D, int K = D - 1>
 class SliceIndex {
  public:
-  /// Cost: sorts the simplices by place, the last axis first (slabs of time), then along a Morton curve.
-  /// About 10 bytes per simplex. Throws std::bad_alloc.
+  /// Cost: sorts the simplices by place, slabs of the last axis (time) first, then along a Morton curve:
+  /// about a microsecond and 40 bytes per simplex. Throws std::bad_alloc.
   explicit SliceIndex(const SimplexMesh<D, K>& mesh);
 
-  /// `slice(mesh, plane, options)`, its simplices in the order of the index. Requires the mesh of the
-  /// constructor, unchanged.
+  /// `slice(mesh, plane, options)`, its vertices and simplices in the order of the index. Requires the mesh
+  /// of the constructor, unchanged. May be called from several threads at once.
+  /// Cost: 10 nanoseconds for each chunk of several hundred simplices, and then 10 to 20 for each simplex of
+  /// the cut. A plane that holds samples costs about a microsecond for each simplex of the cut.
   Result<SimplexMesh<D - 1, K - 1>> slice(const SimplexMesh<D, K>& mesh, const Hyperplane<D>& plane,
                                           const SliceOptions& options = {}) const;
 
+  /// The same into `cut`, replacing what it holds but keeping its memory. After an error it holds nothing of
+  /// use.
+  Status slice_into(const SimplexMesh<D, K>& mesh, const Hyperplane<D>& plane, const SliceOptions& options,
+                    SimplexMesh<D - 1, K - 1>& cut) const;
+
  private:
-  struct Group {
-    std::array<double, D> low, high; // the box of its simplices
-  };
-  std::vector<std::uint64_t> order_; // simplices
-  std::vector<Group> groups_;        // of as many simplices each, in that order
+  struct Chunks;
+  std::shared_ptr<const Chunks> chunks_; // never changes
 };
 
 /// How a field is cut.

@@ -33,6 +33,19 @@ class CutPlane {
     for (int k = 0; k < D; ++k) distance += plane_.normal[k] * static_cast<double>(point[k]);
     return distance;
   }
+  // The same of many points, given axis by axis: in the same order of operations, to the same bits.
+  template <class Real>
+  void beyond_all(const Real* positions, std::size_t count, double* distances) const {
+    if (across_) {
+      const Real* along = positions + static_cast<std::size_t>(*across_) * count;
+      for (std::size_t i = 0; i < count; ++i) distances[i] = static_cast<double>(along[i]) - plane_.offset;
+      return;
+    }
+    for (std::size_t i = 0; i < count; ++i) distances[i] = -plane_.offset;
+    for (std::size_t k = 0; k < D; ++k)
+      for (std::size_t i = 0; i < count; ++i)
+        distances[i] += plane_.normal[k] * static_cast<double>(positions[k * count + i]);
+  }
   std::array<double, D - 1> coordinates(const std::array<double, D>& point) const {
     return across_ ? without(point, *across_) : frame_.coordinates(point);
   }
@@ -167,25 +180,40 @@ CutCorners<Index> cut_corners(std::span<const Real> positions, std::span<const I
   return cut;
 }
 
+// The point of the plane on an edge: its weight from the lower end and its coordinates in the plane.
+template <int D>
+struct PointOnEdge {
+  double weight;
+  std::array<double, D - 1> coordinates;
+
+  // The ends, and how far each lies beyond the plane.
+  PointOnEdge(const CutPlane<D>& plane, const std::array<double, D>& lower, double lower_beyond,
+              const std::array<double, D>& upper, double upper_beyond)
+      : weight(lower_beyond / (lower_beyond - upper_beyond)) {
+    std::array<double, D> point;
+    for (int k = 0; k < D; ++k) point[k] = lower[k] + weight * (upper[k] - lower[k]);
+    coordinates = plane.coordinates(point);
+  }
+};
+
 // Places the vertices of a cut: their coordinates in the plane, and their weights from the lower end of their
 // edge.
 template <int D, class Real, class Index, class Stored>
 Array<double> place_vertices(std::span<const Real> positions, const Array<MeshEdge<Index>>& edges,
                              const CutPlane<D>& plane, std::span<Stored> coordinates) {
+  const auto position_of = [&](std::size_t vertex) {
+    std::array<double, D> position;
+    for (std::size_t k = 0; k < D; ++k) position[k] = static_cast<double>(positions[vertex * D + k]);
+    return position;
+  };
   Array<double> weights;
   weights.reset(edges.size());
   for (std::size_t vertex = 0; vertex < edges.size(); ++vertex) {
-    const Real* lower = &positions[std::size_t{edges[vertex].lower} * D];
-    const Real* upper = &positions[std::size_t{edges[vertex].upper} * D];
-    const double before = plane.beyond(lower), after = plane.beyond(upper);
-    const double weight = weights[vertex] = before / (before - after);
-    std::array<double, D> point;
-    for (int k = 0; k < D; ++k)
-      point[k] = static_cast<double>(lower[k]) +
-                 weight * (static_cast<double>(upper[k]) - static_cast<double>(lower[k]));
-    const auto in_plane = plane.coordinates(point);
+    const auto lower = position_of(edges[vertex].lower), upper = position_of(edges[vertex].upper);
+    const PointOnEdge<D> point(plane, lower, plane.beyond(lower.data()), upper, plane.beyond(upper.data()));
+    weights[vertex] = point.weight;
     for (std::size_t k = 0; k < D - 1; ++k)
-      coordinates[vertex * (D - 1) + k] = static_cast<Stored>(in_plane[k]);
+      coordinates[vertex * (D - 1) + k] = static_cast<Stored>(point.coordinates[k]);
   }
   return weights;
 }

@@ -22,6 +22,17 @@ struct Layer {
   std::int64_t index;
 };
 
+// The layer of samples of the grid that a mesh came from, if the plane holds one.
+template <int D, int K>
+std::optional<Layer> layer_in(const SimplexMesh<D, K>& mesh, const Hyperplane<D>& plane) {
+  const std::optional<int> across = axis_across(plane);
+  if (!across || mesh.edges.empty() || mesh.grid_axes.size() != K + 1) return std::nullopt;
+  const auto around =
+      samples_around(mesh.grid_axes[static_cast<std::size_t>(*across)], plane.offset / plane.normal[*across]);
+  if (!around || around->end - around->begin != 1) return std::nullopt;
+  return Layer{*across, around->begin};
+}
+
 template <int D, int K>
 class Trace {
   // Axes of the grid, and corners of a simplex.
