@@ -1000,6 +1000,16 @@ class Slices(Case):
             both.append([(cut["vertices"], cut["simplices"], cut["measure"]["euler_characteristic"]) for cut in found])
         self.assertEqual(*both)
 
+    def test_volumes_from_field_and_mesh(self):
+        field = self.sample("ball", "10,10,10,5")
+        self.ok("interval", field, "--range", "0.4:0.6", "-o", "volume.vtu")
+        planes = ["--time", "0.5,0.6", "--plane", "1,0,0,1,0.5"]
+        both = [[(cut["vertices"], cut["simplices"]) for cut in self.ok("slice", *source, *planes, "--json").json()["slices"]]
+                for source in ([field, "--range", "0.4:0.6"], ["volume.vtu"])]
+        self.assertEqual(*both)
+        self.assert_refused(2, "slice", field, "--range", "0.4:0.6", "--iso", "1", "--time", "0", words=["--iso", "--range"])
+        self.assert_refused(2, "slice", "volume.vtu", "--range", "0:1", "--time", "0", words=["mesh"])
+
     # In the frame of the axes places are true; the other frame is told, and leads to the same places.
     def test_frame_of_an_oblique_plane(self):
         field = self.sample("ball", "10,10,10,5")

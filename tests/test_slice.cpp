@@ -541,6 +541,36 @@ TEST(FieldSlicer, any_plane_gives_what_the_whole_mesh_gives) {
       }
 }
 
+// The same for volumes, whose grid edges are those of the lifted field.
+TEST(FieldSlicer, any_plane_of_a_volume_gives_what_the_whole_volume_gives) {
+  const std::vector<Hyperplane<4>> planes{{{0.3, -0.2, 0.5, 0.1}, 1.2},
+                                          {{1, 1, 0, 0}, 4},
+                                          {{1, 0, 0, 1}, 3},
+                                          {{1, -1, 0.5, -0.25}, 0},
+                                          {{0, 1, 0, 0}, 1.5},
+                                          {{0, 0, 0, 1}, 1.5},
+                                          {{0, 0, 0, 1}, 2},
+                                          {{0, 0, 1, 0}, 2},
+                                          {{1, 1, 1, 1}, 99}};
+  const auto field = random_field<float, 4>({4, 4, 4, 4}, 1000, 7);
+  for (const std::vector<double>& levels : {std::vector<double>{-200, 300}, {-500, 0, 100}})
+    for (const Method method : {Method::hull, Method::simplicial}) {
+      IntervalOptions filling;
+      filling.method = method;
+      const auto volume = *interval(field.view, std::span<const double>(levels), filling);
+      FieldSliceOptions options;
+      options.method = method;
+      FieldSteps steps(unowned_field(field.view));
+      FieldSlicer<4, 4> slicer(steps, levels, options);
+      for (const auto& plane : planes) {
+        const auto cut = slicer.slice(plane);
+        ASSERT_TRUE(cut) << cut.error().message;
+        expect_same_mesh(*cut, sliced(volume, plane));
+        EXPECT_EQ(cut->attributes.size(), cut->simplex_count() > 0 ? 2u : cut->attributes.size());
+      }
+    }
+}
+
 // A series of moments shares the surface of each slab.
 TEST(FieldSlicer, many_moments_in_any_order) {
   const auto field = random_field<float, 4>({5, 4, 5, 4}, 9, 3);

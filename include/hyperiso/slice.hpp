@@ -126,8 +126,9 @@ struct FieldSliceOptions : ExtractOptions {
   std::vector<Other> others = {}; ///< further fields, interpolated at the surface: attributes of their names
 };
 
-/// Cuts of the isosurface of a field, without the D-mesh: `slice(extract(field), plane)` as a set of vertices
-/// and simplices, with the same attributes.
+/// Cuts of the isosurface of a field (K = D-1) or of an interval volume (K = D), without the D-mesh:
+/// `slice(extract(field), plane)`, or of `interval(field, levels)`, as a set of vertices and simplices, with
+/// the same attributes.
 ///
 /// Of the last axis (steps, if it is time) it reads what the plane meets: of a plane across it, the samples
 /// around it; of any other plane, slab after slab of two samples each; for normals one more on both sides;
@@ -137,17 +138,21 @@ struct FieldSliceOptions : ExtractOptions {
 /// Cuts across the last axis between the same two samples share one surface, indexed: so a series of many
 /// moments in their order extracts every slab once.
 /// Memory: the samples of a slab, its part of the surface and the cut; nothing else stays.
-template <int D>
+template <int D, int K = D - 1>
 class FieldSlicer {
  public:
-  /// `source` has D axes and must outlive the slicer.
-  FieldSlicer(StepSource& source, double isovalue, FieldSliceOptions options = {});
+  /// `source` has D axes and must outlive the slicer. `levels`: of a surface its isovalue alone, of a volume
+  /// two or more. Volumes take no normals and no other fields.
+  FieldSlicer(StepSource& source, std::vector<double> levels, FieldSliceOptions options = {});
+  FieldSlicer(StepSource& source, double isovalue, FieldSliceOptions options = {}) requires(K == D - 1)
+      : FieldSlicer(source, std::vector<double>{isovalue}, std::move(options)) {}
   ~FieldSlicer();
   FieldSlicer(FieldSlicer&&) noexcept;
 
-  /// Errors: those of `extract`, `add_point_data`, the source and the other `slice`; outside_domain if a
-  /// plane across an axis misses the field. An oblique plane that misses it gives an empty mesh.
-  Result<SimplexMesh<D - 1>> slice(const Hyperplane<D>& plane);
+  /// Errors: those of `extract` or `interval`, `add_point_data`, the source and the other `slice`;
+  /// outside_domain if a plane across an axis misses the field. An oblique plane that misses it gives an
+  /// empty mesh.
+  Result<SimplexMesh<D - 1, K - 1>> slice(const Hyperplane<D>& plane);
 
  private:
   class Work;

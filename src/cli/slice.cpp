@@ -9,14 +9,12 @@
 #include "cli/point_data.hpp"
 #include "cli/surface.hpp"
 #include "core/memory.hpp"
-#include "hyperiso/interval.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <map>
 #include <memory>
 #include <set>
 
@@ -261,100 +259,60 @@ std::vector<MappedPlane> mapped_planes(const Slice& options, const Plan& plan, c
   return mapped;
 }
 
-// The samples that a plane meets: along the last axis those around it, if it lies across that axis.
-Field samples_for(const Plane& plane, SelectedSteps& steps) {
-  const std::vector<Axis>& axes = steps.info().axes;
-  if (plane.axis < 0) return take(steps.read(0, axes.back().count));
-  const auto axis = static_cast<std::size_t>(plane.axis);
-  const SampleRange around = take(samples_around(axes[axis], plane.offset / plane.normal[axis]));
-  if (axis + 1 == axes.size()) return take(steps.read(around.begin, around.end));
-  return take(steps.read(0, axes.back().count)).cropped(plane.axis, around.begin, around.end);
-}
+// Makes the cuts of surfaces (K = D-1), one slicer for each isovalue, or of a volume (K = D).
+template <int D, int K>
+void slice_steps(const Slice& options, const Plan& plan, SelectedSteps& steps,
+                 const std::vector<std::vector<double>>& levels, std::vector<Outcome>& outcomes) {
+  const std::vector<MappedPlane> mapped = mapped_planes(options, plan, steps.info());
+  const std::vector<NamedSteps> others = options.data.open(options.input, options.machine);
+  const Progress* progress_of_cut = nullptr;
+  FieldSliceOptions how;
+  static_cast<ExtractOptions&>(how) = options.surface.extract_options(options.machine);
+  how.frame = steps.info().world ? SliceFrame::axes : options.where.slice_frame();
+  how.with_normals = options.data.normals;
+  for (const NamedSteps& other : others) how.others.push_back({other.name, other.steps.get()});
+  how.progress = [&](double share) { return (*progress_of_cut)(share); };
+  std::vector<FieldSlicer<D, K>> slicers;
+  for (const std::vector<double>& of_one : levels) slicers.emplace_back(steps, of_one, how);
 
-// A layer of one sample has no interval volume of its own dimension: it is the volume of the layer itself.
-template <int D>
-Mesh slice_volume(const Slice& options, const Plan& plan, const MappedPlane& mapped, const Field& field,
-                  const Progress& progress) {
-  IntervalOptions filling;
-  static_cast<ExtractOptions&>(filling) = options.surface.extract_options(options.machine);
-  filling.progress = progress;
-  const std::span<const double> levels(plan.levels);
-  const Plane& plane = mapped.plane;
-  const SliceFrame frame = mapped.map ? SliceFrame::axes : options.where.slice_frame();
-  return visit_sample_type(field.info.type, [&]<class T>(T) -> Mesh {
-    const auto view = field.view<T, D>();
-    if (plane.axis >= 0 && view.grid.axes[static_cast<std::size_t>(plane.axis)].count == 1)
-      return take(interval(view.at_index(plane.axis, 0), levels, filling));
-    const auto volume = take(interval(view, levels, filling));
-    return take(hyperiso::slice(volume, plane.hyperplane<D>(), SliceOptions{filling.precision, true, frame}));
+  make_cuts<D>(options, plan, outcomes, [&](Outcome& outcome, const Progress& progress) -> Mesh {
+    progress_of_cut = &progress;
+    const double read_before = steps.read_seconds();
+    const MappedPlane& plane = mapped[static_cast<std::size_t>(outcome.plane - plan.planes.data())];
+    const auto number = static_cast<std::size_t>(&outcome - outcomes.data());
+    Mesh mesh = take(slicers[number % slicers.size()].slice(plane.plane.hyperplane<D>()));
+    if (plane.map) transform(mesh, *plane.map);
+    outcome.read_seconds = steps.read_seconds() - read_before;
+    return mesh;
   });
-}
-
-std::vector<Outcome> slice_field_volume(const Slice& options, Plan& plan) {
-  if (!options.iso.empty()) fail_usage("--iso and --range: give one of them, a surface or a volume");
-  if (options.data.from_field()) fail_usage("--with, --normals: for surfaces; a volume carries its levels");
-  plan.levels = parse_levels("--range", options.range);
-  (void)options.surface.extract_options(options.machine); // wrong ones are told before anything is read
-  SelectedSteps steps(options.input.open(options.machine), options.input);
-  const FieldInfo& info = steps.info();
-  check_dimension(info.dimension(), lowest_sliced, highest_dimension, "the field");
-  plan.axes = info.axes;
-  plan.simplex_dimension = plan.dimension();
-  plan.planes = planes_in(options, plan.axes);
-  std::vector<Outcome> outcomes = outcomes_of(options, plan);
-  const std::vector<MappedPlane> mapped = mapped_planes(options, plan, info);
-  with_dimension<lowest_sliced>(info.dimension(), "the field", [&](auto dimension) {
-    constexpr int D = decltype(dimension)::value;
-    make_cuts<D>(options, plan, outcomes, [&](Outcome& outcome, const Progress& progress) -> Mesh {
-      const MappedPlane& plane = mapped[static_cast<std::size_t>(outcome.plane - plan.planes.data())];
-      const double read_before = steps.read_seconds();
-      const Field field = samples_for(plane.plane, steps);
-      outcome.read_seconds = steps.read_seconds() - read_before;
-      Mesh mesh = slice_volume<D>(options, plan, plane, field, progress);
-      if (plane.map) transform(mesh, *plane.map);
-      return mesh;
-    });
-  });
-  return outcomes;
 }
 
 // The names of the axes of the world are those of the field.
 std::vector<Outcome> slice_field(const Slice& options, Plan& plan) {
-  if (options.iso.empty())
-    fail_usage("--iso (for a surface) or --range (for a volume) is required to slice a field");
-  plan.isovalues = parse_isovalues(options.iso);
+  if (options.iso.empty() == options.range.empty())
+    fail_usage("to slice a field give either --iso, for its surface, or --range, for a volume");
+  const bool volume = options.iso.empty();
+  if (volume && options.data.from_field()) fail_usage("--with, --normals: volumes have none; give --iso");
+  std::vector<std::vector<double>> levels;
+  if (volume) {
+    plan.levels = parse_levels("--range", options.range);
+    levels.push_back(plan.levels);
+  } else {
+    plan.isovalues = parse_isovalues(options.iso);
+    for (const double isovalue : plan.isovalues) levels.push_back({isovalue});
+  }
   (void)options.surface.extract_options(options.machine); // wrong ones are told before anything is read
   SelectedSteps steps(options.input.open(options.machine), options.input);
   const FieldInfo& info = steps.info();
   check_dimension(info.dimension(), lowest_sliced, highest_dimension, "the field");
   plan.axes = info.axes;
-  plan.simplex_dimension = plan.dimension() - 1;
+  plan.simplex_dimension = volume ? plan.dimension() : plan.dimension() - 1;
   plan.planes = planes_in(options, plan.axes);
   std::vector<Outcome> outcomes = outcomes_of(options, plan);
-  const std::vector<MappedPlane> mapped = mapped_planes(options, plan, info);
-  const std::vector<NamedSteps> others = options.data.open(options.input, options.machine);
-
   with_dimension<lowest_sliced>(info.dimension(), "the field", [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;
-    const Progress* progress_of_cut = nullptr;
-    FieldSliceOptions how;
-    static_cast<ExtractOptions&>(how) = options.surface.extract_options(options.machine);
-    how.frame = info.world ? SliceFrame::axes : options.where.slice_frame();
-    how.with_normals = options.data.normals;
-    for (const NamedSteps& other : others) how.others.push_back({other.name, other.steps.get()});
-    how.progress = [&](double share) { return (*progress_of_cut)(share); };
-    std::map<double, FieldSlicer<D>> slicers;
-    for (const double isovalue : plan.isovalues) slicers.try_emplace(isovalue, steps, isovalue, how);
-
-    make_cuts<D>(options, plan, outcomes, [&](Outcome& outcome, const Progress& progress) -> Mesh {
-      progress_of_cut = &progress;
-      const double read_before = steps.read_seconds();
-      const MappedPlane& plane = mapped[static_cast<std::size_t>(outcome.plane - plan.planes.data())];
-      Mesh mesh = take(slicers.at(*outcome.isovalue).slice(plane.plane.hyperplane<D>()));
-      if (plane.map) transform(mesh, *plane.map);
-      outcome.read_seconds = steps.read_seconds() - read_before;
-      return mesh;
-    });
+    volume ? slice_steps<D, D>(options, plan, steps, levels, outcomes)
+           : slice_steps<D, D - 1>(options, plan, steps, levels, outcomes);
   });
   return outcomes;
 }
@@ -370,8 +328,8 @@ void check_planes(const Plan& plan) {
 }
 
 std::vector<Outcome> slice_mesh(const Slice& options, Plan& plan) {
-  if (!options.iso.empty() || !options.range.empty())
-    fail_usage("--iso, --range: the input is a mesh; its isovalues are chosen already");
+  if (!options.iso.empty()) fail_usage("--iso: the input is a mesh; its isovalue is chosen already");
+  if (!options.range.empty()) fail_usage("--range: the input is a mesh; its levels are chosen already");
   if (options.data.from_field())
     fail_usage(
         "--with, --normals: the input is a mesh; what its vertices carry comes along, so give these to "
@@ -403,9 +361,7 @@ int run(const Slice& options) {
   Plan plan;
   (void)options.where.slice_frame();
   const bool from_mesh = options.input.paths.size() == 1 && is_mesh_file(options.input.paths[0]);
-  const std::vector<Outcome> outcomes = from_mesh               ? slice_mesh(options, plan)
-                                        : options.range.empty() ? slice_field(options, plan)
-                                                                : slice_field_volume(options, plan);
+  const std::vector<Outcome> outcomes = from_mesh ? slice_mesh(options, plan) : slice_field(options, plan);
   print_outcomes(outcomes, options, plan);
   return 0;
 }
@@ -420,10 +376,8 @@ Command slice_command(CLI::App& program) {
   app->add_option("--iso", options->iso, "fields: the isovalue, or several with commas between them")
       ->type_name("V[,V...]")
       ->group("Surface");
-  app->add_option(
-         "--range", options->range,
-         "fields: instead of --iso, the volume between values, as 'hyperiso interval' takes them: A:B, "
-         "A:B:N or a list")
+  app->add_option("--range", options->range,
+                  "fields: cut the volume between these values instead, as 'hyperiso interval' makes it")
       ->type_name("A:B[:N]")
       ->group("Surface");
   options->surface.add_to(*app);
@@ -441,7 +395,6 @@ Command slice_command(CLI::App& program) {
   set_manual(
       *app,
       {{"slice INPUT... --iso V --time T[,T...] [options]", "slice MESH --time T[,T...] [options]",
-        "slice INPUT... --range A:B --time T[,T...] [options]",
         "slice INPUT... --axis NAME=V[,V...] [options]", "slice INPUT... --plane N,...,C [options]"},
        {"Cuts a 4D isosurface into triangles in space: the surface at time T, between the stored steps as "
         "well as on them, or on any other plane, and a mesh of tetrahedra as 'hyperiso interval' makes it. A "
@@ -457,9 +410,6 @@ Command slice_command(CLI::App& program) {
         "space: origin + u[0] directions[0] + u[1] directions[1] + ..."},
        {{"the surface at one moment, from the field",
          "hyperiso slice examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 --time 0.33 -o water.ply"},
-        {"where there is a tenth to nine tenths of water at that moment, as tetrahedra",
-         "hyperiso slice examples/data/alpha_water_24x24x24x41.nrrd --range 0.1:0.9 --time 0.33 -o "
-         "spray.vtu"},
         {"a movie of five frames for ParaView", "hyperiso slice examples/data/alpha_water_24x24x24x41.nrrd "
                                                 "--iso 0.5 --times 0:0.04:0.01 -o movie.pvd"},
         {"a surface made before, cut twice and measured",
@@ -467,6 +417,9 @@ Command slice_command(CLI::App& program) {
         {"", "hyperiso slice water.vtu --time 0.31,0.62 --measure"},
         {"how the profile at y = 0.5 moves through time",
          "hyperiso slice water.vtu --axis y=0.5 -o profile.vtp"},
+        {"where there is a tenth to nine tenths of water, at one moment, as tetrahedra",
+         "hyperiso slice examples/data/alpha_water_24x24x24x41.nrrd --range 0.1:0.9 --time 0.33 -o "
+         "spray.vtu"},
         {"what a plane sees that sweeps through the tank, numbered files",
          "hyperiso slice water.vtu --plane 1,0,0,-0.5,0:0.5:0.125 -o sweep_%04d.ply"}}});
   return {app, [options] { return run(*options); }};

@@ -3,6 +3,7 @@
 #include "core/rows.hpp"
 #include "core/text.hpp"
 #include "hyperiso/interpolate.hpp"
+#include "hyperiso/interval.hpp"
 #include "hyperiso/slice.hpp"
 #include "slice/check_plane.hpp"
 #include "slice/slab_join.hpp"
@@ -58,21 +59,24 @@ Result<Field> gather_layer(StepSource& source, int axis, std::int64_t index) {
 
 } // namespace
 
-template <int D>
-class FieldSlicer<D>::Work {
- public:
-  Work(StepSource& source, double isovalue, FieldSliceOptions options)
-      : source_(source), isovalue_(isovalue), options_(std::move(options)) {}
+template <int D, int K>
+class FieldSlicer<D, K>::Work {
+  static constexpr int codimension = D - K;
 
-  Result<SimplexMesh<D - 1>> slice(const Hyperplane<D>& plane) {
+ public:
+  Work(StepSource& source, std::vector<double> levels, FieldSliceOptions options)
+      : source_(source), levels_(std::move(levels)), options_(std::move(options)) {}
+
+  Result<SimplexMesh<D - 1, K - 1>> slice(const Hyperplane<D>& plane) {
     if (const Status valid = check_plane(plane); !valid) return valid.error();
+    if (const Status valid = check_levels(); !valid) return valid.error();
     try {
       const std::optional<int> across = axis_across(plane);
       if (!across) return slice_slabs(plane, std::nullopt);
       const auto around =
           samples_around(axes()[static_cast<std::size_t>(*across)], plane.offset / plane.normal[*across]);
       if (!around) return around.error();
-      if (around->end - around->begin == 1) return surface_of_layer(*across, around->begin);
+      if (around->end - around->begin == 1) return mesh_of_layer(*across, around->begin);
       return *across == D - 1 ? slice_between(*around, plane) : slice_slabs(plane, *around);
     } catch (const std::bad_alloc&) {
       return Error{Code::out_of_memory, "not enough memory for the slice"};
@@ -80,7 +84,23 @@ class FieldSlicer<D>::Work {
   }
 
  private:
+  Status check_levels() const {
+    if (codimension == 1 && levels_.size() != 1)
+      return Error{Code::invalid_isovalue, text("a surface has one isovalue, not ", levels_.size())};
+    if (codimension == 0 && with_data())
+      return Error{Code::invalid_argument, "interval volumes take no normals and no other fields"};
+    return {};
+  }
   const std::vector<Axis>& axes() const { return source_.info().axes; }
+  // Of the grid that the meshes lie on: with the axis of levels, of a volume.
+  std::vector<Axis> grid_axes() const {
+    std::vector<Axis> result = axes();
+    if (codimension == 0) {
+      result.emplace_back();
+      result.back().count = static_cast<std::int64_t>(levels_.size());
+    }
+    return result;
+  }
   SliceOptions slice_options() const { return {options_.precision, true, options_.frame}; }
 
   // `take` is what is done with each source.
@@ -112,15 +132,19 @@ class FieldSlicer<D>::Work {
     return samples.field.cropped(D - 1, begin, begin + 2);
   }
 
-  // The surface of `part`, a part of the samples of `window`.
+  // The surface, or the volume, of `part`, a part of the samples of `window`.
   template <int Dimension>
-  Result<SimplexMesh<Dimension>> surface_of(const Field& part, const Window& window,
-                                            const ExtractOptions& options) const {
+  Result<SimplexMesh<Dimension, Dimension - codimension>> mesh_of(const Field& part, const Window& window,
+                                                                  const ExtractOptions& options) const {
     auto mesh = visit_sample_type(part.info.type, [&](auto sample) {
-      return extract(part.view<decltype(sample), Dimension>(), isovalue_, options);
+      const auto view = part.view<decltype(sample), Dimension>();
+      if constexpr (codimension == 1)
+        return extract(view, levels_[0], options);
+      else
+        return interval(view, std::span<const double>(levels_), IntervalOptions{options, LevelAxis::last});
     });
     if (!mesh) return mesh;
-    if (const Status added = add_point_data(*mesh, window.field, isovalue_, options_.inside, window.others,
+    if (const Status added = add_point_data(*mesh, window.field, levels_[0], options_.inside, window.others,
                                             options_.with_normals);
         !added)
       return added.error();
@@ -128,7 +152,7 @@ class FieldSlicer<D>::Work {
   }
   bool with_data() const { return options_.with_normals || !options_.others.empty(); }
 
-  Result<SimplexMesh<D - 1>> surface_of_layer(int axis, std::int64_t index) {
+  Result<SimplexMesh<D - 1, K - 1>> mesh_of_layer(int axis, std::int64_t index) {
     const auto layer = window([&](StepSource& source) -> Result<Field> {
       if (axis != D - 1) return gather_layer(source, axis, index);
       auto step = source.read(index, index + 1);
@@ -138,19 +162,19 @@ class FieldSlicer<D>::Work {
     if (!layer) return layer.error();
     ExtractOptions options = options_;
     options.keep_edges |= with_data();
-    return surface_of<D - 1>(layer->field, *layer, options);
+    return mesh_of<D - 1>(layer->field, *layer, options);
   }
 
   // Between two samples of the last axis. Their surface is kept for the next cut, from the second one on with
   // an index.
-  Result<SimplexMesh<D - 1>> slice_between(SampleRange around, const Hyperplane<D>& plane) {
+  Result<SimplexMesh<D - 1, K - 1>> slice_between(SampleRange around, const Hyperplane<D>& plane) {
     if (!kept_ || kept_->begin != around.begin) {
       kept_.reset();
       const auto samples = read(around.begin, around.end);
       if (!samples) return samples.error();
       ExtractOptions options = options_;
       options.keep_edges = true;
-      auto surface = surface_of<D>(slab_of(*samples, around.begin, axes()), *samples, options);
+      auto surface = mesh_of<D>(slab_of(*samples, around.begin, axes()), *samples, options);
       if (!surface) return surface.error();
       kept_.emplace(Kept{around.begin, *std::move(surface), {}});
       return hyperiso::slice(kept_->surface, plane, slice_options());
@@ -160,9 +184,10 @@ class FieldSlicer<D>::Work {
   }
 
   // Slab after slab; `around`: the samples of the axis that the plane lies across, if there is one.
-  Result<SimplexMesh<D - 1>> slice_slabs(const Hyperplane<D>& plane, std::optional<SampleRange> around) {
+  Result<SimplexMesh<D - 1, K - 1>> slice_slabs(const Hyperplane<D>& plane,
+                                                std::optional<SampleRange> around) {
     if (options_.method == Method::barycentric) return slice_whole(plane);
-    SlabJoin<D> join(axes(), plane, options_.precision, options_.frame);
+    SlabJoin<D, K> join(grid_axes(), plane, options_.precision, options_.frame);
     const std::int64_t steps = axes().back().count;
     for (std::int64_t step = 0; step + 1 < steps; ++step) {
       const auto ranges = ranges_met(plane, step, around);
@@ -172,16 +197,16 @@ class FieldSlicer<D>::Work {
       Field part = slab_of(*samples, step, axes());
       for (int axis = 0; axis + 1 < D; ++axis)
         part = part.cropped(axis, (*ranges)[axis].begin, (*ranges)[axis].end);
-      const auto surface = surface_of<D>(part, *samples, slab_options(step, steps - 1));
+      const auto surface = mesh_of<D>(part, *samples, slab_options(step, steps - 1));
       if (!surface) return surface.error();
       join.add(*surface);
     }
     return std::move(join).mesh();
   }
-  Result<SimplexMesh<D - 1>> slice_whole(const Hyperplane<D>& plane) {
+  Result<SimplexMesh<D - 1, K - 1>> slice_whole(const Hyperplane<D>& plane) {
     const auto samples = read(0, axes().back().count);
     if (!samples) return samples.error();
-    const auto surface = surface_of<D>(samples->field, *samples, options_);
+    const auto surface = mesh_of<D>(samples->field, *samples, options_);
     if (!surface) return surface.error();
     return hyperiso::slice(*surface, plane, slice_options());
   }
@@ -240,30 +265,32 @@ class FieldSlicer<D>::Work {
 
   struct Kept {
     std::int64_t begin;
-    SimplexMesh<D> surface;
-    std::optional<SliceIndex<D>> index;
+    SimplexMesh<D, K> surface;
+    std::optional<SliceIndex<D, K>> index;
   };
 
   StepSource& source_;
-  double isovalue_;
+  const std::vector<double> levels_;
   FieldSliceOptions options_;
   std::optional<Kept> kept_;
 };
 
-template <int D>
-FieldSlicer<D>::FieldSlicer(StepSource& source, double isovalue, FieldSliceOptions options)
-    : work_(std::make_unique<Work>(source, isovalue, std::move(options))) {}
-template <int D>
-FieldSlicer<D>::~FieldSlicer() = default;
-template <int D>
-FieldSlicer<D>::FieldSlicer(FieldSlicer&&) noexcept = default;
+template <int D, int K>
+FieldSlicer<D, K>::FieldSlicer(StepSource& source, std::vector<double> levels, FieldSliceOptions options)
+    : work_(std::make_unique<Work>(source, std::move(levels), std::move(options))) {}
+template <int D, int K>
+FieldSlicer<D, K>::~FieldSlicer() = default;
+template <int D, int K>
+FieldSlicer<D, K>::FieldSlicer(FieldSlicer&&) noexcept = default;
 
-template <int D>
-Result<SimplexMesh<D - 1>> FieldSlicer<D>::slice(const Hyperplane<D>& plane) {
+template <int D, int K>
+Result<SimplexMesh<D - 1, K - 1>> FieldSlicer<D, K>::slice(const Hyperplane<D>& plane) {
   return work_->slice(plane);
 }
 
 template class FieldSlicer<3>;
 template class FieldSlicer<4>;
+template class FieldSlicer<3, 3>;
+template class FieldSlicer<4, 4>;
 
 } // namespace hyperiso
