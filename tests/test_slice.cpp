@@ -311,8 +311,10 @@ TEST(SliceIndex, volumes_soups_and_attributes) {
         ASSERT_TRUE(expected);
         ASSERT_TRUE(index.slice_into(mesh, plane, options, reused));
         EXPECT_GT(reused.simplex_count(), 0u);
-        expect_same_mesh(reused, *expected);
+        EXPECT_TRUE(simplex_set(reused) == simplex_set(*expected));
         EXPECT_EQ(measure(reused)->bad_facets, 0u);
+        if (!welded) continue; // the numbers of vertices differ
+        EXPECT_TRUE(vertex_set(reused) == vertex_set(*expected));
         for (std::size_t number = 0; number < 2; ++number)
           std::visit(
               [&]<class Values>(Values values) {
@@ -461,10 +463,12 @@ TEST(Slice, sphere_and_paraboloid_of_figure_5) {
           std::max(paraboloid_residual[fine],
                    std::abs(std::inner_product(fit.begin(), fit.end(), rows[row].begin(), -values[row])));
   }
-  EXPECT_LT(sphere_residual[1], 0.4 * sphere_residual[0]);
-  EXPECT_LT(paraboloid_residual[1], 0.4 * paraboloid_residual[0]);
-  EXPECT_LT(sphere_residual[0], 1. / 144);
-  EXPECT_LT(paraboloid_residual[0], 1. / 144);
+  // Linear interpolation along an axis misses a unit quadratic by up to h^2 / 4.
+  for (std::size_t fine = 0; fine < 2; ++fine) {
+    const double h = fine ? 1. / 24 : 1. / 12;
+    EXPECT_LT(sphere_residual[fine], 0.75 * h * h);
+    EXPECT_LT(paraboloid_residual[fine], 0.75 * h * h);
+  }
 }
 
 // No popping between steps: the area of a moving ball's slices, and its change, go on steadily.

@@ -53,8 +53,8 @@ Attribute axis_on_slice(const Mesh& cut, const Hyperplane<D>& plane, SliceFrame 
 
 struct SliceOptions {
   Precision precision = Precision::f32; ///< of the positions; they are computed in double in any case
-  bool welded =
-      true; ///< false: the pieces of every simplex have vertices of their own; several times as fast
+  bool welded = true; ///< false: pieces of different simplices of the mesh share no vertices; of SliceIndex,
+                      ///< no two pieces do
   SliceFrame frame = SliceFrame::orthonormal;
 };
 
