@@ -15,11 +15,12 @@ namespace hyperiso::track_detail {
 // Numbered by their first vertices. Edges are taken and given as numbered in the lower step of a slab.
 class StepPieces {
  public:
-  // Of a surface with its edges, which is kept in place as long as this. `row_length`: samples along axis 0.
+  // Of a surface with its edges, with or without positions, which is kept in place as long as this.
+  // `row_length`: samples along axis 0.
   template <int S>
   StepPieces(const SimplexMesh<S>& surface, GridEdge row_length)
       : edges_(surface.edges.begin(), surface.edges.end()), row_length_(row_length), space_(S),
-        piece_(surface.vertex_count()) {
+        piece_(surface.edges.size()) {
     std::iota(piece_.begin(), piece_.end(), 0u); // parents at first
     for (std::size_t simplex = 0; simplex < surface.simplex_count(); ++simplex) {
       std::uint32_t first = root(static_cast<std::uint32_t>(surface.simplices[simplex * S]));
