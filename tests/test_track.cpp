@@ -45,6 +45,7 @@ TEST(Track, two_gaussians_merge_once_at_the_origin) {
 
 TEST(Track, time_reversed_gaussians_split_once) {
   expect_history(track_field(two_gaussians(true), 0.5), {{EventType::split, 7.083753}});
+  expect_history(track_field(two_gaussians(true), 0.5, simplicial()), {{EventType::split, 7.083753}});
 }
 
 TEST(Track, a_ball_is_born_and_dies) {
@@ -121,6 +122,12 @@ TEST(Track, a_ring_closes_and_its_hole_fills) {
   }));
   const auto graph = track_field(field, 0.9);
   expect_history(graph, {{EventType::birth, 2}, {EventType::genus, 13.78458}, {EventType::genus, 26.40881}});
+  // The linear interpolant of the Kuhn simplices has an island that is not there with the hull's edges.
+  expect_history(track_field(field, 0.9, simplicial()), {{EventType::birth, 2},
+                                                         {EventType::birth, 3.370459},
+                                                         {EventType::merge, 3.446091},
+                                                         {EventType::genus, 13.784579},
+                                                         {EventType::genus, 26.408810}});
 }
 
 TEST(Track, three_gaussians_make_a_hole_that_fills) {
@@ -157,8 +164,14 @@ TEST(Track, a_moving_plane_has_no_history) {
 TEST(Track, two_planes_are_born_as_one_node) {
   const auto field = time_field<double, 4>(make_field<double, 4>(
       space_time_grid<4>(5, 8), [](auto p) { return std::abs(p[0]) - 0.5 * (p[3] - 2.5); }));
+  expect_history(track_field(field, 0, simplicial()), {{EventType::compound, 2.5}});
   const auto graph = track_field(field, 0);
   expect_history(graph, {{EventType::compound, 2.5}});
+  for (const auto& event : graph.events)
+    if (event.type == EventType::compound) {
+      EXPECT_EQ(event.arcs_in.size(), 0u);
+      EXPECT_EQ(event.arcs_out.size(), 2u);
+    }
 }
 
 // A box of ones, n cells long, that is somewhere else at the second step.
@@ -166,7 +179,7 @@ TrackingGraph shifted_boxes(int shift, Method method, std::optional<double> thre
   const int n = 20;
   Grid<4> grid = unit_grid<4>({70, 8, 8, 2});
   const auto field = make_field<float, 4>(grid, [=](const auto& p) {
-    const double start = 2.5 + shift * p[3];
+    const double start = (shift < 0 ? 46.5 : 2.5) + shift * p[3];
     return p[0] > start && p[0] < start + n && p[1] > 2 && p[1] < 6 && p[2] > 2 && p[2] < 6 ? 1.0 : 0.0;
   });
   TrackOptions options;
@@ -192,7 +205,11 @@ TEST(Track, overlap_of_shifted_boxes) {
     EXPECT_EQ(cut.tracks[1].start_type, "weak");
     expect_history(shifted_boxes(21, method), {{EventType::death, 0.5}, {EventType::birth, 0.5}});
   }
+  // Boxes that just touch: the hull joins all that is inside of a cell, a Kuhn diagonal only one direction.
   expect_history(shifted_boxes(20, Method::hull), {});
+  expect_history(shifted_boxes(-20, Method::hull), {});
+  const auto right = shifted_boxes(20, Method::simplicial), left = shifted_boxes(-20, Method::simplicial);
+  EXPECT_NE(right.links.empty(), left.links.empty());
 }
 
 TEST(Track, overlap_of_shifted_balls) {

@@ -2,6 +2,7 @@
 // the whole mesh as a possible event and finding the components of all slices and levels afresh.
 
 #include "core/union_find.hpp"
+#include "hyperiso/interval.hpp"
 #include "track_fields.hpp"
 
 #include <numeric>
@@ -16,7 +17,8 @@ using check::track_field;
 struct Complex {
   using Corners = std::vector<std::uint64_t>;
 
-  Complex(const Mesh& mesh, const std::vector<double>& vertex_times) : times(vertex_times) {
+  Complex(const Mesh& mesh, const std::vector<double>& vertex_times)
+      : times(vertex_times), region(mesh.simplex_dimension == mesh.dimension) {
     const auto corners = static_cast<std::size_t>(mesh.simplex_dimension + 1);
     faces.resize(corners);
     tops.resize(corners);
@@ -39,6 +41,7 @@ struct Complex {
   }
 
   std::vector<double> times;
+  bool region;
   std::vector<std::vector<Corners>> faces;
   std::vector<std::map<Corners, int>> tops; // how many simplices have it
 };
@@ -68,7 +71,7 @@ struct Slices {
             edges.push_back(found->second);
       return edges;
     };
-    const bool surface = complex.faces.size() == 4;
+    const bool surface = complex.faces.size() == 4 && !complex.region;
     for (const auto& triangle : complex.faces[2]) {
       if (!meets(triangle)) continue;
       const auto edges = edges_of(triangle);
@@ -89,27 +92,22 @@ struct Slices {
 };
 
 // One line for each event: what it is, when, and what the components that end there began with.
-template <class T, int D>
-std::multiset<std::string> brute_force_history(const FieldView<const T, D>& field,
-                                               const ExtractOptions& extraction) {
-  ExtractOptions options = extraction;
-  options.precision = Precision::f64;
-  const auto mesh = extract(field, 0, options);
+template <int D>
+std::multiset<std::string> history_of(const Mesh& mesh, const std::array<std::int64_t, D>& dims) {
   const auto position = [&](std::uint64_t vertex, std::size_t axis) {
-    return mesh->positions[vertex * D + axis];
+    return mesh.positions[vertex * D + axis];
   };
   std::vector<double> times;
-  for (std::size_t vertex = 0; vertex < mesh->vertex_count(); ++vertex)
+  for (std::size_t vertex = 0; vertex < mesh.vertex_count(); ++vertex)
     times.push_back(position(vertex, D - 1));
-  const Complex complex(*mesh, times);
-  const auto last_step = static_cast<double>(field.dims()[D - 1] - 1);
+  const Complex complex(mesh, times);
+  const auto last_step = static_cast<double>(dims[D - 1] - 1);
   const auto on_layer = [&](std::uint64_t vertex) {
     return times[vertex] == 0 || times[vertex] == last_step;
   };
   const auto on_wall = [&](std::uint64_t vertex) {
     for (std::size_t axis = 0; axis + 1 < D; ++axis)
-      if (position(vertex, axis) == 0 ||
-          position(vertex, axis) == static_cast<double>(field.dims()[axis] - 1))
+      if (position(vertex, axis) == 0 || position(vertex, axis) == static_cast<double>(dims[axis] - 1))
         return true;
     return false;
   };
@@ -176,9 +174,9 @@ std::multiset<std::string> brute_force_history(const FieldView<const T, D>& fiel
       else if (m == 1 && n == 0)
         type = node.all_on_wall ? "exit" : "death";
       else if (m == 1 && n == 1)
-        type = D == 4 && change.euler + change.rims != 0           ? "genus"
-               : change.euler != 0 || (D == 4 && change.rims != 0) ? "touch"
-                                                                   : "";
+        type = (D == 4 || complex.region) && change.euler + change.rims != 0 ? "genus"
+               : change.euler != 0 || (D == 4 && change.rims != 0)           ? "touch"
+                                                                             : "";
       else
         type = n == 1 ? "merge" : m == 1 ? "split" : "compound";
       if (m + n == 0) continue;
@@ -200,6 +198,14 @@ std::multiset<std::string> brute_force_history(const FieldView<const T, D>& fiel
     before = std::move(after);
   }
   return history;
+}
+
+template <class T, int D>
+std::multiset<std::string> brute_force_history(const FieldView<const T, D>& field,
+                                               const ExtractOptions& extraction) {
+  ExtractOptions options = extraction;
+  options.precision = Precision::f64;
+  return history_of<D>(*extract(field, 0, options), field.dims());
 }
 
 std::multiset<std::string> tracked_history(const TrackingGraph& graph) {
@@ -258,6 +264,50 @@ TEST(TrackBruteForce, simplicial) {
     compare<3>({4, 3, 3}, seed % 2 == 0 ? 1 : 5, seed, Inside::above, Method::simplicial);
   for (unsigned seed = 0; seed < 8; ++seed)
     compare<4>({3, 2, 3, 3}, seed % 2 == 0 ? 1 : 5, seed, Inside::above, Method::simplicial);
+}
+// The region is that of the interval volume up to a level that no sample reaches: with `simplicial` a mesh
+// other than the one that is tracked, of the same set.
+template <int D>
+void compare_region(const std::array<std::int64_t, D>& dims, int range, unsigned seed, Method method,
+                    std::optional<double> upper = {}, int missing = 0) {
+  auto field = check::random_field<float, D>(dims, range, seed);
+  std::mt19937 random(seed);
+  for (int i = 0; i < missing; ++i) field.samples[random() % field.samples.size()] = std::nanf("");
+  TrackOptions options;
+  options.tracked = Tracked::region;
+  options.extraction.method = method;
+  options.upper_isovalue = upper;
+  IntervalOptions volume;
+  volume.method = method;
+  volume.precision = Precision::f64;
+  const auto mesh = interval(field.view, 0, upper.value_or(2 * range + 0.7), volume);
+  EXPECT_EQ(tracked_history(track_field(time_field<float, D>(field), 0, options)),
+            history_of<D>(*mesh, field.view.dims()))
+      << "seed " << seed << ", samples up to " << range;
+}
+
+TEST(TrackBruteForce, regions_in_2d) {
+  for (const Method method : {Method::hull, Method::simplicial})
+    for (const int range : {1, 3, 100000})
+      for (unsigned seed = 0; seed < 12; ++seed) compare_region<3>({4, 3, 4}, range, seed, method);
+}
+TEST(TrackBruteForce, regions_between_two_isovalues_in_2d) {
+  for (const Method method : {Method::hull, Method::simplicial})
+    for (unsigned seed = 0; seed < 15; ++seed) {
+      compare_region<3>({4, 3, 3}, 2, seed, method, 1);
+      compare_region<3>({4, 3, 3}, 1000, seed, method, 300);
+    }
+}
+TEST(TrackBruteForce, regions_in_3d) {
+  for (unsigned seed = 0; seed < 6; ++seed)
+    for (const int range : {1, 3, 1000}) {
+      compare_region<4>({3, 2, 3, 3}, range, seed, Method::hull);
+      if (seed < 2) compare_region<4>({2, 2, 3, 2}, range, seed, Method::simplicial);
+    }
+  compare_region<4>({3, 2, 2, 2}, 2, 1, Method::hull, 1);
+}
+TEST(TrackBruteForce, regions_with_missing_samples) {
+  for (unsigned seed = 0; seed < 40; ++seed) compare_region<3>({5, 4, 4}, 4, seed, Method::hull, {}, 4);
 }
 // Holes in the data end components as walls do.
 TEST(TrackBruteForce, with_missing_samples) {

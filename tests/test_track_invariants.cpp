@@ -15,8 +15,9 @@ using check::OwnedField;
 using check::time_field;
 using check::track_field;
 
-TrackOptions with(Method method, Inside inside = Inside::above) {
+TrackOptions with(Method method, Inside inside = Inside::above, Tracked tracked = Tracked::surface) {
   TrackOptions options;
+  options.tracked = tracked;
   options.extraction.method = method;
   options.extraction.inside = inside;
   return options;
@@ -94,8 +95,10 @@ void for_random_fields(int count, std::int64_t side, Test&& test) {
 // Tracks appear and disappear only at events that say so.
 TEST(TrackInvariants, arcs_are_conserved) {
   const auto test = [](const auto& field) {
-    for (const Method method : {Method::hull, Method::simplicial}) {
-      const auto graph = track_field(time_field(field), 0, with(method));
+    for (const auto& [method, tracked] :
+         {std::pair(Method::hull, Tracked::surface), std::pair(Method::simplicial, Tracked::surface),
+          std::pair(Method::hull, Tracked::region)}) {
+      const auto graph = track_field(time_field(field), 0, with(method, Inside::above, tracked));
       std::int64_t sum = 0;
       for (const auto& event : graph.events) {
         sum += static_cast<std::int64_t>(event.arcs_out.size()) -
@@ -119,9 +122,11 @@ TEST(TrackInvariants, arcs_are_conserved) {
 TEST(TrackInvariants, no_event_at_a_step_unless_samples_equal_the_isovalue) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     auto field = check::random_field<float, 3>({5, 5, 5}, 1000, seed);
-    for (const auto& event : track_field(time_field(field), 0.5).events)
-      EXPECT_EQ(event.time == std::floor(event.time),
-                event.type == EventType::open_start || event.type == EventType::open_end);
+    for (const Tracked tracked : {Tracked::surface, Tracked::region})
+      for (const auto& event :
+           track_field(time_field(field), 0.5, with(Method::hull, Inside::above, tracked)).events)
+        EXPECT_EQ(event.time == std::floor(event.time),
+                  event.type == EventType::open_start || event.type == EventType::open_end);
   }
 }
 
@@ -155,6 +160,29 @@ TEST(TrackInvariants, time_reversal_reverses_the_history) {
   };
   for_random_fields<3>(15, 5, test);
   for_random_fields<4>(4, 3, test);
+}
+
+// A region of the interpolant on Kuhn simplices is a set that knows no order of cells.
+TEST(TrackInvariants, a_simplicial_region_is_the_same_backwards_and_with_other_axes) {
+  const TrackOptions region = with(Method::simplicial, Inside::above, Tracked::region);
+  for_random_fields<3>(8, 4, [&](const auto& field) {
+    const auto dims = field.view.dims();
+    const auto back = map_samples<3>(
+        field,
+        [&](auto index) {
+          return std::array{dims[0] - 1 - index[0], dims[1] - 1 - index[1], dims[2] - 1 - index[2]};
+        },
+        dims);
+    const auto turned = map_samples<3>(
+        field,
+        [](auto index) {
+          return std::array{index[1], index[0], index[2]};
+        },
+        dims);
+    const auto graph = track_field(time_field(field), 0, region);
+    EXPECT_EQ(signature(graph), signature(track_field(time_field(back), 0, region), true));
+    EXPECT_EQ(signature(graph), signature(track_field(time_field(turned), 0, region)));
+  });
 }
 
 TEST(TrackInvariants, permuting_axes_of_space_changes_nothing_with_simplicial) {
@@ -239,7 +267,8 @@ ContourTree::Neighbours neighbours(const std::array<std::int64_t, D>& dims,
 // g a permutation of 0, 1, ... on the grid of space, f = g + t - n on steps so many that the isosurface at
 // -1/2 comes and goes within them; the sample with value g joins the inside at t = n - g - 1/2.
 template <int D>
-void compare_with_contour_tree(Method method, unsigned seed, const std::array<std::int64_t, D>& dims) {
+void compare_with_contour_tree(Method method, unsigned seed, const std::array<std::int64_t, D>& dims,
+                               Tracked tracked = Tracked::surface) {
   int count = 1;
   for (const auto n : dims) count *= static_cast<int>(n);
   std::vector<int> values(static_cast<std::size_t>(count));
@@ -254,7 +283,7 @@ void compare_with_contour_tree(Method method, unsigned seed, const std::array<st
   const auto field = check::make_field<float, D + 1>(unit_grid<D + 1>(with_time), [&](const auto& point) {
     return values[next++ % values.size()] + point[D] - count;
   });
-  const auto graph = track_field(time_field(field), -0.5, with(method));
+  const auto graph = track_field(time_field(field), -0.5, with(method, Inside::above, tracked));
 
   const auto kuhn = [](std::array<int, D> step) {
     const auto [low, high] = std::ranges::minmax(step);
@@ -272,16 +301,27 @@ void compare_with_contour_tree(Method method, unsigned seed, const std::array<st
       neighbours<D>(dims, simplicial ? kuhn : std::function<bool(std::array<int, D>)>(axes)));
 
   // Inside, time runs with falling g: a new component is born, several join; outside it runs backwards: where
-  // outside components would join, the surface's part; where one would begin, the surface's dies.
+  // outside components would join, the surface's part; where one would begin, the surface's dies. The region
+  // inside knows nothing of these: its tree is that of the joins.
   std::map<double, int> expected, found; // components after less before, at each time
   const auto time_of = [&](int value) { return count - value - 0.5; };
   for (const auto& [value, met] : tree.joins()) expected[time_of(value)] += 1 - static_cast<int>(met);
-  for (const auto& [value, met] : tree.splits()) expected[time_of(value)] += static_cast<int>(met) - 1;
+  for (const auto& [value, met] : tree.splits())
+    if (tracked == Tracked::surface) expected[time_of(value)] += static_cast<int>(met) - 1;
   for (const auto& event : graph.events)
-    found[event.time] += static_cast<int>(event.arcs_out.size()) - static_cast<int>(event.arcs_in.size());
+    if (event.type != EventType::open_end) // a region is all there is at last
+      found[event.time] += static_cast<int>(event.arcs_out.size()) - static_cast<int>(event.arcs_in.size());
   for (auto* changes : {&expected, &found})
     std::erase_if(*changes, [](const auto& change) { return change.second == 0; });
   EXPECT_EQ(found, expected) << "seed " << seed;
+}
+
+TEST(TrackInvariants, the_graph_of_a_rising_region_is_the_join_tree) {
+  for (unsigned seed = 0; seed < 25; ++seed)
+    for (const Method method : {Method::simplicial, Method::hull}) {
+      compare_with_contour_tree<2>(method, seed, {5, 4}, Tracked::region);
+      if (seed < 4) compare_with_contour_tree<3>(method, seed, {3, 3, 3}, Tracked::region);
+    }
 }
 
 TEST(TrackInvariants, the_graph_of_a_rising_field_is_its_contour_tree) {

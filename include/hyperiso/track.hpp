@@ -6,13 +6,21 @@
 #include "hyperiso/step_source.hpp"
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace hyperiso {
 
-/// What happens to components at one moment in one connected piece of the surface (docs/tracking.md).
+/// What has components.
+enum class Tracked {
+  surface, ///< the isosurface
+  region,  ///< what lies inside it, or between two isovalues: two surfaces that bound one shell are one thing
+};
+
+/// What happens to components at one moment in one connected piece of the surface (docs/tracking.md); of a
+/// region in the same way.
 enum class EventType {
   birth,      ///< nothing before, one component after
   death,      ///< one before, nothing after
@@ -55,6 +63,12 @@ struct TrackingArc {
   double least_overlap = 1; ///< of its links; 1 if it has none
 };
 
+/// A field beside the tracked one, over the samples that lie inside a component; missing ones do not count.
+struct FieldSum {
+  double mass = 0; ///< sum of the samples, each by its share of the cells
+  double minimum = std::numeric_limits<double>::infinity(), maximum = -minimum; ///< infinite without samples
+};
+
 /// A component at a step: one row of features.csv.
 struct Feature {
   std::int64_t step = 0;
@@ -63,17 +77,19 @@ struct Feature {
   std::int64_t arc = -1;   ///< that passes the step, or -1:
   std::int64_t event = -1; ///< the event at the step that it is part of, or -1
 
+  // Of a region all is that of its mesh, but for the cell volume.
   double volume = 0;      ///< enclosed, or inside it where walls cut it open: of the piecewise linear surface
   double cell_volume = 0; ///< the same as paper 003 counts it: cells by the share of their corners inside
   double surface_area = 0;
-  double mass = 0;                 ///< sum of the samples inside, each by its share of the cells
-  double minimum = 0, maximum = 0; ///< of the samples inside
-  std::vector<double> centroid;    ///< of the samples inside, each by its share of the cells
-  std::vector<double> low, high;   ///< bounding box of the surface
-  std::int64_t euler_characteristic = 0;
-  std::int64_t wall_curves = 0; ///< boundary curves of a surface in 3D
-  std::int64_t cells = 0;       ///< grid cells that the surface passes through
+  double mass = 0; ///< sum of the samples inside, each by its share of the cells; of a region, the integral
+  double minimum = 0, maximum = 0;       ///< of the samples inside
+  std::vector<double> centroid;          ///< of the samples inside, each by its share of the cells
+  std::vector<double> low, high;         ///< bounding box of the surface
+  std::int64_t euler_characteristic = 0; ///< of the surface, or of the region
+  std::int64_t wall_curves = 0;          ///< boundary curves of a surface in 3D; 0 for regions
+  std::int64_t cells = 0;                ///< grid cells that it passes through
   bool on_wall = false;
+  std::vector<FieldSum> with; ///< of TrackOptions::with, in that order
 
   /// (2 - wall_curves - euler_characteristic) / 2: handles, where it is one closed or cut surface in 3D.
   double genus() const { return 0.5 * static_cast<double>(2 - wall_curves - euler_characteristic); }
@@ -95,20 +111,26 @@ struct Track {
   double max_volume = 0;
   std::int64_t family = -1; ///< smallest number of a track that events connect it with
   bool clipped = false;     ///< touched a wall of the domain
-  bool simplified = false;  ///< left out by `simplify`
+  /// The indices of the lowest corner of a grid cell that it passes, time last: a seed for
+  /// `track_from_seeds`. Empty for regions.
+  std::vector<std::int64_t> cell;
+  bool simplified = false; ///< left out by `simplify`
 };
 
 /// The Reeb graph of time on the surface, in order of time; what is measured at steps; tracks through it.
 struct TrackingGraph {
   /// The feature that the piece of the surface at a step belongs to whose first vertex lies on `edge`.
   struct Piece {
-    GridEdge edge; ///< on the grid of the step
+    GridEdge edge; ///< on the grid of the step, for a region on that grid with an axis of its levels
     std::int64_t feature;
   };
 
   std::vector<Axis> axes; ///< of the field, time last
   std::int64_t steps = 0;
+  Tracked tracked = Tracked::surface;
   double isovalue = 0;
+  std::optional<double> upper_isovalue; ///< of a region that lies between two
+  std::vector<std::string> with;        ///< names of TrackOptions::with
   std::vector<TrackingEvent> events;
   std::vector<TrackingArc> arcs;
   std::vector<Feature> features; ///< by step
@@ -117,16 +139,38 @@ struct TrackingGraph {
   std::vector<Track> tracks;
 };
 
+/// How the volumes of an overlap and of what overlaps are taken.
+enum class OverlapVolumes {
+  cells, ///< as paper 003 counts them: cells by the share of their corners inside
+  exact, ///< of the interpolants that are linear on the Kuhn simplices of the cells: what `simplicial`
+         ///< bounds; with `hull`, where cells are ambiguous, a simplex that touches two cavities counts for
+         ///< one of them
+};
+
+/// Another field on the same grid of samples.
+struct FieldBeside {
+  std::string name;
+  StepSource* source = nullptr;
+};
+
 struct TrackOptions {
-  ExtractOptions extraction = {}; ///< method, inside, memory_limit and progress count
-  bool measure_features = true;   ///< else features and links stay empty, and identity goes by age
+  ExtractOptions extraction = {};            ///< method, inside, memory_limit and progress count
+  Tracked tracked = Tracked::surface;        ///< a region only with the methods hull and simplicial
+  std::optional<double> upper_isovalue = {}; ///< of a region: it lies between `isovalue` and this one
+  bool measure_features = true;              ///< else features and links stay empty, and identity goes by age
   std::optional<double> overlap_threshold = {}; ///< links at or below it are weak; none: no link is
+  OverlapVolumes overlap_volumes = OverlapVolumes::cells;
+  std::vector<FieldBeside> with = {}; ///< summed over the features; each as many samples along each axis
 };
 
 /// Tracks the components of the isosurface of `source` through the time that is its last axis, two steps in
 /// memory at a time (D = 3 and 4: 2D and 3D through time). Between steps the field is linear in time along
 /// each edge, and the events are those of the isosurface in space and time that `extract` makes: exact, ties
 /// included, found without any tolerance.
+///
+/// With Tracked::region the components are those of the inside, or of what lies between two isovalues: the
+/// events are those of the interval volume in space and time that `interval` makes, `genus` where one
+/// component changes its Euler characteristic. It costs more, as the inside is filled with simplices.
 ///
 /// The graph does not depend on the number of threads. Errors: those of `extract` and of the source;
 /// invalid_argument for fewer than two steps or a time axis that does not increase.
@@ -163,7 +207,8 @@ std::int64_t simplify(TrackingGraph& graph, double minimum_volume, double minimu
 /// the event, as in EventType, or -1); line data BranchId and Overlap (1 at events).
 Mesh graph_mesh(const TrackingGraph& graph);
 
-/// The surface at a step with the tracks of its pieces: simplex data `track_id` and `family_id`, -1 where M
+/// The surface at a step, or the region as a mesh of triangles or tetrahedra, with the tracks of its pieces:
+/// simplex data `track_id` and `family_id`, -1 where M
 /// has none. `step` is that step alone, as `source.read(k, k + 1)` gives it.
 /// Requires that `graph` came from the same field with the same options and with features measured.
 Result<Mesh> tracked_surface(const TrackingGraph& graph, const Field& step, std::int64_t number,

@@ -5,6 +5,7 @@
 #include "cli/manual.hpp"
 #include "cli/options.hpp"
 #include "cli/parse.hpp"
+#include "cli/point_data.hpp"
 #include "cli/seed.hpp"
 #include "cli/surface.hpp"
 #include "core/memory.hpp"
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
+#include <fstream>
 #include <memory>
 
 namespace hyperiso::cli {
@@ -22,34 +24,14 @@ namespace {
 
 struct Track {
   FieldOptions input;
-  std::vector<std::string> seeds;
-  std::string iso, overlap, minimum_volume, minimum_duration, directory;
+  std::vector<std::string> seeds, with;
+  std::string iso, range, tracked, overlap, overlap_volumes, select, minimum_volume, minimum_duration,
+      directory;
   SurfaceOptions surface;
   PrintOptions printing;
   MachineOptions machine;
-};
 
-// The steps of a file that were selected.
-class SelectedSteps final : public StepSource {
- public:
-  SelectedSteps(FieldReader& reader, Selection selection)
-      : reader_(reader), selection_(std::move(selection)), info_(selected(reader.info(), selection_)) {}
-  const FieldInfo& info() const override { return info_; }
-  Result<Field> read(std::int64_t begin, std::int64_t end) override {
-    Selection wanted = selection_;
-    const std::int64_t first = selection_.ranges.back().first;
-    wanted.ranges.back() = {first + begin, first + end};
-    try {
-      return read_selection(reader_, wanted);
-    } catch (const Failure& failure) {
-      return failure.error;
-    }
-  }
-
- private:
-  FieldReader& reader_;
-  Selection selection_;
-  FieldInfo info_;
+  bool is_local() const { return !seeds.empty() || !select.empty(); }
 };
 
 // "0.35" or "35%"
@@ -65,6 +47,13 @@ double parse_share(std::string_view option, std::string value) {
 TrackOptions track_options(const Track& options) {
   TrackOptions result;
   result.extraction = options.surface.extract_options(options.machine);
+  if (!options.tracked.empty() && options.tracked != "surface" && options.tracked != "region")
+    fail_usage(text("--track: '", options.tracked, "' is neither surface nor region"));
+  if (options.tracked == "region" || !options.range.empty()) result.tracked = Tracked::region;
+  if (options.overlap_volumes == "exact")
+    result.overlap_volumes = OverlapVolumes::exact;
+  else if (!options.overlap_volumes.empty() && options.overlap_volumes != "cells")
+    fail_usage(text("--overlap-volumes: '", options.overlap_volumes, "' is neither cells nor exact"));
   if (!options.overlap.empty()) result.overlap_threshold = parse_share("--overlap", options.overlap);
   return result;
 }
@@ -76,12 +65,57 @@ double not_negative(const char* option, const std::string& value) {
   return number;
 }
 
+// The seed of a track by the table of a former run: the last column of its row.
+std::string seed_of_track(const std::string& select) {
+  const auto colon = select.rfind(':');
+  if (colon == std::string::npos) fail_usage(text("--select: '", select, "' is not FOLDER:ID"));
+  const std::string path = select.substr(0, colon) + "/tracks.csv";
+  const std::int64_t wanted = parse_integer("--select", select.substr(colon + 1));
+  std::ifstream table(path);
+  if (!table) throw Failure{{Code::file_not_found, text("--select: ", path, ": there is no such file")}};
+  std::string line;
+  std::getline(table, line);
+  if (!line.ends_with(",seed"))
+    fail_usage(
+        text("--select: ", path, " is no table of tracks that track -o wrote: its last column is not seed"));
+  for (std::int64_t row = 0; std::getline(table, line); ++row) {
+    if (row != wanted) continue;
+    std::string seed = line.substr(line.rfind(',') + 1);
+    if (seed.empty())
+      fail_usage(text("--select: ", path, ": track ", wanted, " has no seed, as it is a region"));
+    std::ranges::replace(seed, ' ', ',');
+    return seed;
+  }
+  fail_usage(text("--select: ", path, " has no track ", wanted));
+}
+
+// What is tracked: at one isovalue, or from one to another.
+struct Isovalues {
+  double first;
+  std::optional<double> upper;
+};
+Isovalues isovalues_of(const Track& options) {
+  if (options.iso.empty() == options.range.empty()) fail_usage("give either --iso or --range");
+  if (!options.iso.empty()) {
+    const std::vector<double> isovalues = parse_isovalues(options.iso);
+    if (isovalues.size() > 1) fail_usage("--iso: one isovalue is tracked at a time");
+    return {isovalues[0], {}};
+  }
+  if (options.tracked == "surface") fail_usage("--range tracks a region; it cannot go with --track surface");
+  const auto colon = options.range.find(':');
+  if (colon == std::string::npos) fail_usage(text("--range: '", options.range, "' is not A:B"));
+  return {parse_number("--range", options.range.substr(0, colon)),
+          parse_number("--range", options.range.substr(colon + 1))};
+}
+
 TrackingGraph make_graph(const Track& options, StepSource& steps, double isovalue, TrackOptions tracking) {
   ProgressBar bar("track", options.printing.quiet);
   tracking.extraction.progress = bar.callback();
-  if (options.seeds.empty()) return take(track(steps, isovalue, tracking));
+  if (!options.is_local()) return take(track(steps, isovalue, tracking));
   std::vector<std::vector<std::int64_t>> cells;
-  for (const std::string& seed : options.seeds) cells.push_back(cell_at(seed, steps.info().axes));
+  const std::vector<Axis>& axes = steps.info().axes;
+  for (const std::string& seed : options.seeds) cells.push_back(cell_at(seed, axes));
+  if (!options.select.empty()) cells.push_back(cell_at(seed_of_track(options.select), axes));
   return take(track_from_seeds(steps, isovalue, cells, tracking)).graph;
 }
 
@@ -97,7 +131,9 @@ void write_surfaces(const Track& options, const TrackingGraph& graph, SelectedSt
     bar.show(static_cast<double>(step) / static_cast<double>(graph.steps));
     const Field field = take(steps.read(step, step + 1));
     const Mesh surface = take(tracked_surface(graph, field, step, track_options(options)));
-    const std::string name = fmt::format("surface_{:04}.vtp", step);
+    const bool region = graph.tracked == Tracked::region;
+    const std::string name =
+        fmt::format("{}_{:04}.{}", region ? "region" : "surface", step, region ? "vtu" : "vtp");
     take(write_mesh(surface, directory / name, format));
     series.push_back({graph.axes.back().coordinate(step), name});
   }
@@ -107,7 +143,7 @@ void write_surfaces(const Track& options, const TrackingGraph& graph, SelectedSt
 void write_outputs(const Track& options, const TrackingGraph& graph, SelectedSteps& steps) {
   FileGroup files;
   take(write_tracking(graph, options.directory, &files));
-  if (options.seeds.empty()) write_surfaces(options, graph, steps, files);
+  if (!options.is_local()) write_surfaces(options, graph, steps, files);
   take(files.commit());
 }
 
@@ -123,7 +159,10 @@ std::string counts_of(const TrackingGraph& graph) {
 
 std::string report_of(const Track& options, const TrackingGraph& graph, double track_seconds) {
   Report report;
-  report.add("isovalue", fmt::format("{}", graph.isovalue));
+  if (graph.upper_isovalue)
+    report.add("range", fmt::format("{} to {}", graph.isovalue, *graph.upper_isovalue));
+  else
+    report.add("isovalue", fmt::format("{}", graph.isovalue));
   report.add("steps", grouped(static_cast<std::uint64_t>(graph.steps)));
   report.add("tracks", grouped(graph.tracks.size()));
   const auto simplified = std::ranges::count(graph.tracks, true, &hyperiso::Track::simplified);
@@ -137,22 +176,28 @@ std::string report_of(const Track& options, const TrackingGraph& graph, double t
 }
 
 int run(const Track& options) {
-  if (options.iso.empty()) fail_usage("--iso is required");
-  const std::vector<double> isovalues = parse_isovalues(options.iso);
-  if (isovalues.size() > 1) fail_usage("--iso: one isovalue is tracked at a time");
-  const TrackOptions tracking = track_options(options);
+  const Isovalues isovalues = isovalues_of(options);
+  TrackOptions tracking = track_options(options);
+  tracking.upper_isovalue = isovalues.upper;
   const double minimum_volume = not_negative("--min-volume", options.minimum_volume);
   const double minimum_duration = not_negative("--min-duration", options.minimum_duration);
 
-  const auto reader = options.input.open(options.machine);
-  SelectedSteps steps(*reader, options.input.selection(reader->info()));
+  if (options.is_local() && tracking.tracked == Tracked::region)
+    fail_usage("--seed and --select follow surfaces; leave out --track region and --range");
+  if (options.is_local() && !options.with.empty())
+    fail_usage("--with: with --seed or --select no features are measured");
+  SelectedSteps steps(options.input.open(options.machine), options.input);
+  PointDataOptions beside;
+  beside.with = options.with;
+  const std::vector<NamedSteps> others = beside.open(options.input, options.machine);
+  for (const NamedSteps& other : others) tracking.with.push_back({other.name, other.steps.get()});
   const Stopwatch watch;
-  TrackingGraph graph = make_graph(options, steps, isovalues[0], tracking);
+  TrackingGraph graph = make_graph(options, steps, isovalues.first, tracking);
   const double track_seconds = watch.seconds();
   simplify(graph, minimum_volume, minimum_duration);
   if (graph.tracks.empty() && !options.printing.quiet)
-    print_warning(
-        text("there is no surface at ", isovalues[0], "; 'hyperiso info' tells the range of the field"));
+    print_warning(text("there is nothing at ", options.iso, options.range,
+                       "; 'hyperiso info' tells the range of the field"));
 
   if (!options.directory.empty()) write_outputs(options, graph, steps);
   if (options.printing.json) {
@@ -173,17 +218,46 @@ Command track_command(CLI::App& program) {
   CLI::App* app = program.add_subcommand("track", "what happens to each component through time, and when");
   options->input.add_to(*app);
   app->add_option("--iso", options->iso, "the isovalue")->type_name("V")->group("Surface");
+  app->add_option("--range", options->range,
+                  "two isovalues: track what lies between them, from one surface to the other")
+      ->type_name("A:B")
+      ->group("Surface");
+  app->add_option("--track", options->tracked,
+                  "surface: components of the isosurface; region: of what is inside it, so that a hollow "
+                  "thing is one, not two")
+      ->type_name("WHAT")
+      ->default_str("surface")
+      ->group("Tracks");
   options->surface.add_to(*app);
   app->add_option(
          "--seed", options->seeds,
          "follow only the component through the grid cell around this point, and its relatives; repeatable")
       ->type_name("X,Y,...,T")
       ->group("Tracks");
+  app->add_option("--select", options->select,
+                  "follow only track ID, and its relatives, of an earlier run that wrote FOLDER")
+      ->type_name("FOLDER:ID")
+      ->group("Tracks");
+  app->add_option(
+         "--with", options->with,
+         "further fields of the same grid, added up over each component: files, or variables of INPUT; "
+         "they are called as the file or the variable is, or NAME")
+      ->type_name("[NAME=]FIELD[,...]")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->group("Tracks");
   app->add_option(
          "--overlap", options->overlap,
          "cut tracks where a component and what it is one step later overlap by no more than this share "
          "of the smaller one; 35% is usual")
       ->type_name("SHARE")
+      ->group("Tracks");
+  app->add_option(
+         "--overlap-volumes", options->overlap_volumes,
+         "cells: overlaps count cells by the share of their corners inside; exact: they are volumes of "
+         "the piecewise linear field")
+      ->type_name("HOW")
+      ->default_str("cells")
       ->group("Tracks");
   app->add_option("--min-volume", options->minimum_volume,
                   "mark tracks that never reach this volume as simplified")
@@ -201,7 +275,8 @@ Command track_command(CLI::App& program) {
   options->machine.add_to(*app);
   set_manual(
       *app,
-      {{"track INPUT... --iso V [-o FOLDER] [options]"},
+      {{"track INPUT... --iso V [--track region] [-o FOLDER] [options]",
+        "track INPUT... --range A:B [-o FOLDER] [options]"},
        {"Follows every connected component of the isosurface of a field on 2 or 3 axes of space through "
         "time, "
         "the last axis. Events have the exact times of the surface in space and time, also between the "
@@ -211,11 +286,13 @@ Command track_command(CLI::App& program) {
         "hole more or less), touch (a wall of the domain begins or ends to cut it), enter and exit (through "
         "a "
         "wall). What is there at the first or last step is open_start or open_end. Only two steps are held.",
+        "With --track region or --range what is followed is the inside, or the volume between two surfaces: "
+        "where two surfaces bound one shell there is one component, and it is that which merges and splits. "
+        "genus is then any change of its Euler characteristic.",
         "With -o: tables (tracks.csv, features.csv, events.csv), events.json, the graph as GraphML, GEXF, "
         "DOT, "
-        "JSON and VTU, pictures (graph.svg, volume.svg), tracks.pvd with the surface of each step named by "
-        "its "
-        "tracks, and files for napari. Coordinates are those of the field's axes."},
+        "JSON and VTU, pictures (graph.svg, volume.svg), tracks.pvd with the surface or region of each "
+        "step named by its tracks, and files for napari. Coordinates are those of the field's axes."},
        {{"what happens to the water of a dam break",
          "hyperiso track examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 -o water"},
         {"the same, without drops", "hyperiso track examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 "

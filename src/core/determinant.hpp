@@ -1,6 +1,7 @@
 #pragma once
 // Determinants of small matrices.
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -8,9 +9,8 @@
 
 namespace hyperiso {
 
-// Of a matrix of n rows of n, by elimination with partial pivoting.
-inline double determinant(std::vector<double> rows, int n) {
-  const auto size = static_cast<std::size_t>(n);
+// Of `size` rows of `size`, by elimination with partial pivoting, in place.
+inline double eliminate(double* rows, std::size_t size) {
   double product = 1;
   for (std::size_t column = 0; column < size; ++column) {
     std::size_t pivot = column;
@@ -29,6 +29,17 @@ inline double determinant(std::vector<double> rows, int n) {
     }
   }
   return product;
+}
+
+// Of a matrix of n rows of n.
+inline double determinant(std::vector<double> rows, int n) {
+  return eliminate(rows.data(), static_cast<std::size_t>(n));
+}
+template <std::size_t N>
+double determinant(const std::array<std::array<double, N>, N>& rows) {
+  std::array<double, N * N> copy;
+  for (std::size_t i = 0; i < N * N; ++i) copy[i] = rows[i / N][i % N];
+  return eliminate(copy.data(), N);
 }
 
 } // namespace hyperiso

@@ -2,7 +2,9 @@
 // What tracking asks of a field and of the method.
 
 #include "core/text.hpp"
-#include "hyperiso/extract.hpp"
+#include "hyperiso/track.hpp"
+
+#include <cmath>
 
 namespace hyperiso::track_detail {
 
@@ -20,6 +22,24 @@ inline Status check_source(const FieldInfo& info, Method method) {
   if (method == Method::barycentric)
     return Error{Code::invalid_argument,
                  "tracking works with the methods hull, component and simplicial, not with barycentric"};
+  return {};
+}
+
+// What `track` is asked to follow.
+inline Status check_tracked(double isovalue, const TrackOptions& options) {
+  if (options.tracked == Tracked::surface) {
+    if (options.upper_isovalue)
+      return Error{Code::invalid_argument,
+                   "between two isovalues lies a region; surfaces are tracked at one isovalue"};
+    return {};
+  }
+  if (options.extraction.method == Method::component)
+    return Error{Code::invalid_argument, "regions are tracked with the methods hull and simplicial"};
+  if (!std::isfinite(isovalue) || !std::isfinite(options.upper_isovalue.value_or(isovalue)))
+    return Error{Code::invalid_isovalue, "the isovalues of a region must be finite numbers"};
+  if (options.upper_isovalue && !(isovalue < *options.upper_isovalue))
+    return Error{Code::invalid_isovalue, text("a region lies between two isovalues, the lower one first; ",
+                                              isovalue, " is not below ", *options.upper_isovalue)};
   return {};
 }
 

@@ -26,6 +26,8 @@ class Level {
     if (upper_) upper_vertices_ = vertices_of_special(upper_places_);
   }
 
+  bool has_genus() const { return (upper_ ? upper_ : lower_)->slab.has_genus(); }
+
   // What a component became: an arc that passes, or an event; neither where no track is.
   struct Outcome {
     std::int64_t arc = -1, event = -1;
@@ -232,7 +234,7 @@ class Level {
     ChangeWithin change;
     if (!type) {
       change = around.change(in.size() == 1 && out.size() == 1);
-      type = type_of_node(in.size(), out.size(), around.all_places.all_on_wall(), change, C == 4);
+      type = type_of_node(in.size(), out.size(), around.all_places.all_on_wall(), change, has_genus());
     }
     if (!type) {
       upper_->set_arc(out[0], in[0]);
@@ -268,7 +270,8 @@ class Level {
                                     Direction::after, any);
       ChangeWithin change{after.euler - before.euler, 0};
       if constexpr (C == 4)
-        if (count_rims) change.rims = rims(after, Direction::after) - rims(before, Direction::before);
+        if (count_rims && level_.upper_->slab.has_rims())
+          change.rims = rims(after, Direction::after) - rims(before, Direction::before);
       return change;
     }
 

@@ -15,7 +15,7 @@ class LinkTest {
   // Of neighbours with the same time those on smaller edges count as earlier (candidates.hpp says why). False
   // also if the link is too large.
   bool is_regular(Slab<C>& slab, Vertex vertex) {
-    if constexpr (C > 4) return false; // links of 4-simplices have faces that are not counted here
+    if constexpr (C > 4) return is_regular_in_volume(slab, vertex);
     std::uint64_t below = 0, above = 0;
     int count = 0, simplices_below = 0, simplices_above = 0;
     const auto star = slab.star(vertex);
@@ -67,6 +67,85 @@ class LinkTest {
     return std::popcount(vertices) - corners_of_edges / 2 + (C == 4 ? simplices : 0);
   }
 
+  // The part of a link of dimension 3 on one side of a vertex: its faces by the numbers of their corners.
+  struct Part {
+    std::array<std::uint8_t, 256> root{}; // of each vertex, in its component
+    std::vector<std::uint32_t> edges, triangles;
+    int vertices = 0, tetrahedra = 0, components = 0;
+
+    void clear() {
+      edges.clear();
+      triangles.clear();
+      vertices = tetrahedra = components = 0;
+    }
+    void add_vertex(std::uint8_t vertex) {
+      root[vertex] = vertex;
+      ++vertices;
+      ++components;
+    }
+    // Of ascending corners.
+    void add(const std::array<std::uint8_t, C>& corners, std::size_t size) {
+      tetrahedra += size == 4;
+      for (std::size_t i = 0; i < size; ++i)
+        for (std::size_t j = i + 1; j < size; ++j) {
+          edges.push_back(static_cast<std::uint32_t>(corners[i] << 8 | corners[j]));
+          unite(corners[i], corners[j]);
+          for (std::size_t k = j + 1; k < size; ++k)
+            triangles.push_back(static_cast<std::uint32_t>(corners[i] << 16 | corners[j] << 8 | corners[k]));
+        }
+    }
+    int euler() { return vertices - distinct(edges) + distinct(triangles) - tetrahedra; }
+
+   private:
+    std::uint8_t find(std::uint8_t vertex) {
+      while (root[vertex] != vertex) vertex = root[vertex] = root[root[vertex]];
+      return vertex;
+    }
+    void unite(std::uint8_t a, std::uint8_t b) {
+      a = find(a);
+      b = find(b);
+      if (a == b) return;
+      root[b] = a;
+      --components;
+    }
+    static int distinct(std::vector<std::uint32_t>& faces) {
+      std::ranges::sort(faces);
+      return static_cast<int>(std::unique(faces.begin(), faces.end()) - faces.begin());
+    }
+  };
+
+  // For 4-simplices. False also if the link has more than 256 vertices.
+  bool is_regular_in_volume(Slab<C>& slab, Vertex vertex) {
+    if (seen_from_.size() < slab.vertex_count()) {
+      seen_from_.resize(slab.vertex_count(), UINT32_MAX);
+      number_.resize(slab.vertex_count());
+    }
+    below_.clear();
+    above_.clear();
+    for (const SimplexNumber simplex : slab.star(vertex)) {
+      std::array<std::uint8_t, C> low{}, high{};
+      std::size_t lows = 0, highs = 0;
+      for (const Vertex other : slab.simplex(simplex)) {
+        if (other == vertex) continue;
+        const bool earlier = slab.is_earlier(other, vertex);
+        if (seen_from_[other] != vertex) {
+          const int count = below_.vertices + above_.vertices;
+          if (count == 256) return false;
+          seen_from_[other] = vertex;
+          number_[other] = static_cast<std::uint8_t>(count);
+          (earlier ? below_ : above_).add_vertex(number_[other]);
+        }
+        (earlier ? low[lows++] : high[highs++]) = number_[other];
+      }
+      std::sort(low.begin(), low.begin() + static_cast<std::ptrdiff_t>(lows));
+      std::sort(high.begin(), high.begin() + static_cast<std::ptrdiff_t>(highs));
+      below_.add(low, lows);
+      above_.add(high, highs);
+    }
+    return below_.components == 1 && above_.components == 1 && below_.euler() == above_.euler();
+  }
+
+  Part below_, above_;
   std::vector<std::uint8_t> number_; // of each vertex of the slab in the link
   std::vector<Vertex> seen_from_;
   std::array<std::uint64_t, 64> neighbours_{}; // of each vertex of the link, itself included

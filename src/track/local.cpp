@@ -255,6 +255,9 @@ Result<LocalTracking> track_from_seeds(StepSource& source, double isovalue,
                                        const TrackOptions& options) {
   const FieldInfo& info = source.info();
   if (const Status valid = check_source(info, options.extraction.method); !valid) return valid.error();
+  if (options.tracked == Tracked::region)
+    return Error{Code::invalid_argument, "from seeds surfaces are tracked, not regions"};
+  if (const Status valid = check_tracked(isovalue, options); !valid) return valid.error();
   try {
     return visit_sample_type(info.type, [&]<class T>(T) -> Result<LocalTracking> {
       if (info.dimension() == 3) return LocalRun<T, 3>(source, isovalue, options).run(cells);

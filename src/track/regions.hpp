@@ -193,6 +193,12 @@ class Regions {
   bool has_missing_;
 };
 
+// Paper 003's ratio.
+inline double share_of_smaller(double common, double first, double second) {
+  const double smaller = std::min(first, second);
+  return smaller > 0 ? common / smaller : 0;
+}
+
 // The size of the overlap of each pair of regions of two steps that overlap, by shares of samples. Pairs are
 // (first << 32 | second); only those wanted in both steps.
 template <int D>

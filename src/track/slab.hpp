@@ -52,7 +52,7 @@ struct Place {
 // an order.
 template <int C>
 class Slab {
-  struct NoCells; // of slabs that are always handed over
+  struct NoCells {}; // of slabs that are always handed over
   using Cells = std::conditional_t<(C <= 4), SignedCells<C>, NoCells>;
 
  public:
@@ -64,6 +64,7 @@ class Slab {
   }
   explicit Slab(std::unique_ptr<Cells> cells) : cells_(std::move(cells)) {}
 
+  bool region = false;      // of simplices of one dimension more than a surface has
   bool has_missing = false; // samples
   bool ties_below = false;  // a vertex at the lower step that is not on an edge within it
   bool ties_above = false;  // the same at the upper step
@@ -71,6 +72,11 @@ class Slab {
   GridEdge step_offset = 0; // from the number of an edge within the lower step to that within the upper one
   std::function<Place(GridEdge)> place; // also of an edge within the lower step that M does not cross
   std::function<Place(GridEdge)> place_of_upper_end; // of a crossing at the upper end of an edge
+
+  // Whether slices are surfaces, which walls cut along curves; and whether what changes their Euler
+  // characteristic is a matter of genus.
+  bool has_rims() const { return C == 4 && !region; }
+  bool has_genus() const { return C == 4 || region; }
 
   // How many have numbers.
   std::size_t vertex_count() const { return edges_.size(); }
@@ -86,7 +92,8 @@ class Slab {
   bool in_step(Vertex vertex) const { return !(edges_[vertex] / row_length >> (C - 1) & 1); }
   // The vertex on an edge, if M has one there.
   std::optional<Vertex> find(GridEdge edge) {
-    if (cells_) return cells_->crosses(edge) ? std::optional(vertex_on(edge)) : std::nullopt;
+    if constexpr (C <= 4)
+      if (cells_) return cells_->crosses(edge) ? std::optional(vertex_on(edge)) : std::nullopt;
     const auto place_of_edge = std::ranges::lower_bound(edges_, edge);
     if (place_of_edge == edges_.end() || *place_of_edge != edge) return std::nullopt;
     return static_cast<Vertex>(place_of_edge - edges_.begin());
@@ -110,7 +117,8 @@ class Slab {
   std::span<const SimplexNumber> star(Vertex vertex) {
     if (!cells_) return stars_.of(vertex);
     if (unfolded_stars_.size() < edges_.size()) unfolded_stars_.resize(edges_.size());
-    if (unfolded_stars_[vertex].empty()) unfold_star(vertex);
+    if constexpr (C <= 4)
+      if (unfolded_stars_[vertex].empty()) unfold_star(vertex);
     return unfolded_stars_[vertex];
   }
 
@@ -121,7 +129,8 @@ class Slab {
 
   // Gives everything a number.
   void unfold_all() {
-    if (cells_) cells_->for_each_cell([&](std::uint64_t cell) { unfold(cell); });
+    if constexpr (C <= 4)
+      if (cells_) cells_->for_each_cell([&](std::uint64_t cell) { unfold(cell); });
   }
 
  private:
@@ -223,8 +232,8 @@ class SlabSamples {
 };
 
 // What both kinds of slabs know of their samples.
-template <class T, int D>
-void describe(Slab<D>& slab, const SlabSamples<T, D>& samples) {
+template <int C, class Samples>
+void describe(Slab<C>& slab, const Samples& samples) {
   slab.row_length = samples.row_length();
   slab.step_offset = samples.step_offset();
   slab.place = [samples](GridEdge edge) { return samples.place(edge); };

@@ -262,7 +262,7 @@ class Sweep {
       place_of_clusters.add({place.mean(), place.all_on_wall()});
     }
     const auto pieces = search_.find({slab, moment, Direction::after}, seeds);
-    if (before.size() == 1 && pieces.size() == 1)
+    if (before.size() == 1 && pieces.size() == 1 && slab.has_rims())
       change.rims = change_of_rims(level_component, critical, moment);
 
     std::vector<std::int64_t> arcs_before;
@@ -271,7 +271,7 @@ class Sweep {
     const std::vector<std::uint64_t> after = relabel(pieces, before, moment);
 
     const auto type =
-        type_of_node(before.size(), after.size(), place_of_clusters.all_on_wall(), change, C == 4);
+        type_of_node(before.size(), after.size(), place_of_clusters.all_on_wall(), change, slab.has_genus());
     if (!type) {
       for (const std::uint64_t strand : after) set_arc(strand, arcs_before[0]);
       return;

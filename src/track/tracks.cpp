@@ -1,6 +1,7 @@
 #include "track/tracks.hpp"
 
 #include "core/union_find.hpp"
+#include "hyperiso/slice.hpp"
 
 #include <algorithm>
 #include <map>
@@ -28,6 +29,7 @@ class TrackAssignment {
     for (Feature& row : graph_.features)
       if (row.event >= 0) row.track = track_at(row.event);
     summarize();
+    find_cells();
     add_overlaps();
   }
 
@@ -215,6 +217,46 @@ class TrackAssignment {
         list->erase(std::unique(list->begin(), list->end()), list->end());
       }
     }
+  }
+
+  // Of a piece at the first step that has one, else where the track begins.
+  void find_cells() {
+    if (graph_.tracked == Tracked::region) return;
+    for (std::size_t step = 0; step < graph_.pieces.size(); ++step)
+      for (const TrackingGraph::Piece& piece : graph_.pieces[step]) {
+        Track& owner = track(graph_.features[index(piece.feature)].track);
+        if (owner.cell.empty()) owner.cell = cell_beside(piece.edge, static_cast<std::int64_t>(step));
+      }
+    for (const TrackingEvent& event : graph_.events)
+      for (const std::int64_t number : event.tracks_out)
+        if (track(number).cell.empty()) track(number).cell = cell_around(event);
+  }
+  std::vector<std::int64_t> in_grid(std::vector<std::int64_t> sample) const {
+    for (std::size_t axis = 0; axis < sample.size(); ++axis)
+      sample[axis] = std::min(sample[axis], graph_.axes[axis].count - 2);
+    return sample;
+  }
+  std::vector<std::int64_t> cell_beside(GridEdge edge, std::int64_t step) const {
+    const auto of_dimension = [&]<int D>() {
+      std::array<std::int64_t, D> dims;
+      for (std::size_t axis = 0; axis < D; ++axis) dims[axis] = graph_.axes[axis].count;
+      const auto lower = grid_edge_ends<D>(dims, edge).lower;
+      std::vector<std::int64_t> sample(lower.begin(), lower.end());
+      sample.push_back(step);
+      return in_grid(std::move(sample));
+    };
+    return graph_.axes.size() == 3 ? of_dimension.template operator()<2>()
+                                   : of_dimension.template operator()<3>();
+  }
+  std::vector<std::int64_t> cell_around(const TrackingEvent& event) const {
+    std::vector<std::int64_t> sample;
+    for (std::size_t axis = 0; axis < graph_.axes.size(); ++axis) {
+      const double coordinate = axis < event.position.size() ? event.position[axis] : event.time;
+      const auto around = samples_around(graph_.axes[axis], coordinate);
+      if (!around) return {};
+      sample.push_back(around->begin);
+    }
+    return in_grid(std::move(sample));
   }
 
   void add_overlaps() {

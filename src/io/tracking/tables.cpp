@@ -2,20 +2,39 @@
 
 #include "io/tracking/common.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 namespace hyperiso {
 
 using namespace tracking_files;
 
+namespace {
+
+// The middle of the track's cell.
+std::vector<double> seed_of(const TrackingGraph& graph, const Track& track) {
+  std::vector<double> seed;
+  for (std::size_t axis = 0; axis < track.cell.size(); ++axis)
+    seed.push_back(std::midpoint(graph.axes[axis].coordinate(track.cell[axis]),
+                                 graph.axes[axis].coordinate(track.cell[axis] + 1)));
+  return seed;
+}
+
+// Of a field's samples; nothing where there are none.
+std::string extreme(double value) { return std::isfinite(value) ? text(value) : std::string(); }
+
+} // namespace
+
 std::string tracks_csv(const TrackingGraph& graph) {
   std::string csv = "track_id,start_time,end_time,start_type,end_type,parents,children,steps,max_volume,"
-                    "family_id,clipped,simplified\n";
+                    "family_id,clipped,simplified,seed\n";
   for (std::size_t id = 0; id < graph.tracks.size(); ++id) {
     const Track& track = graph.tracks[id];
     csv += text(id, ",", track.start_time, ",", track.end_time, ",", track.start_type, ",", track.end_type,
                 ",", joined(track.parents, " "), ",", joined(track.children, " "), ",", track.steps, ",",
-                track.max_volume, ",", track.family, ",", track.clipped, ",", track.simplified, "\n");
+                track.max_volume, ",", track.family, ",", track.clipped, ",", track.simplified, ",",
+                joined(seed_of(graph, track), " "), "\n");
   }
   return csv;
 }
@@ -25,14 +44,20 @@ std::string features_csv(const TrackingGraph& graph) {
   const auto names = space_axis_names(graph);
   for (const char* what : {"centroid_", "low_", "high_"})
     for (const std::string& name : names) csv += text(",", what, name);
-  csv += ",euler_characteristic,wall_curves,genus,cells,on_wall\n";
-  const bool has_genus = names.size() == 3;
+  csv += ",euler_characteristic,wall_curves,genus,cells,on_wall";
+  for (const std::string& name : graph.with)
+    for (const char* what : {"_mass", "_min", "_max"}) csv += text(",", name, what);
+  csv += "\n";
+  const bool has_genus = names.size() == 3 && graph.tracked == Tracked::surface;
   for (const Feature& row : graph.features) {
     csv += text(row.step, ",", row.time, ",", row.track, ",", row.volume, ",", row.cell_volume, ",",
                 row.surface_area, ",", row.mass, ",", row.minimum, ",", row.maximum);
     for (const auto* point : {&row.centroid, &row.low, &row.high}) csv += text(",", joined(*point, ","));
     csv += text(",", row.euler_characteristic, ",", row.wall_curves, ",",
-                has_genus ? text(row.genus()) : std::string(), ",", row.cells, ",", row.on_wall, "\n");
+                has_genus ? text(row.genus()) : std::string(), ",", row.cells, ",", row.on_wall);
+    for (const FieldSum& sum : row.with)
+      csv += text(",", sum.mass, ",", extreme(sum.minimum), ",", extreme(sum.maximum));
+    csv += "\n";
   }
   return csv;
 }

@@ -1,0 +1,114 @@
+#pragma once
+// The part of a region between two steps, as a slab: a complex of one dimension more than that of a surface.
+
+#include "track/region_mesh.hpp"
+#include "track/slab.hpp"
+
+namespace hyperiso::track_detail {
+
+// The grid of a region's slab: the axes of space, the two levels, the two steps. Its edges are those of the
+// lifted grid with time as the last axis, so that numbers go on from slab to slab as those of surfaces do.
+template <class T, int D>
+class RegionSlabSamples {
+ public:
+  RegionSlabSamples(const FieldView<const T, D>& field, const RegionLevels& levels)
+      : vertices_(field, levels), dims_(vertices_.dims()), rows_in_space_(1) {
+    std::swap(dims_[D - 1], dims_[D]);
+    for (int axis = 1; axis < D - 1; ++axis) rows_in_space_ *= static_cast<GridEdge>(dims_[axis]);
+  }
+
+  GridEdge row_length() const { return static_cast<GridEdge>(dims_[0]); }
+  GridEdge step_offset() const { return (2 * rows_in_space_ << (D + 1)) * row_length(); }
+
+  // From an edge of the grid with the levels last.
+  GridEdge with_time_last(GridEdge edge) const {
+    const GridEdge row_and_direction = edge / row_length(), x = edge % row_length();
+    const GridEdge row = row_and_direction >> (D + 1), direction = row_and_direction & ((2u << D) - 1);
+    const GridEdge in_space = row % rows_in_space_, step = row / rows_in_space_ % 2,
+                   level = row / rows_in_space_ / 2;
+    const GridEdge along_step = direction >> (D - 1) & 1, along_level = direction >> D & 1;
+    const GridEdge space = direction & ((1u << (D - 1)) - 1);
+    return (((in_space + rows_in_space_ * (level + 2 * step)) << (D + 1)) |
+            (space | along_level << (D - 1) | along_step << D)) *
+               row_length() +
+           x;
+  }
+  double time(GridEdge edge) const { return locate(edge).weight; }
+  Place place(GridEdge edge) const { return place_at(locate(edge)); }
+  Place place_of_upper_end(GridEdge edge) const {
+    auto location = locate(edge);
+    location.weight = 1;
+    return place_at(location);
+  }
+
+ private:
+  using Location = typename RegionVertices<T, D>::Location;
+
+  Location locate(GridEdge edge) const {
+    auto ends = grid_edge_ends<D + 1>(dims_, edge);
+    std::swap(ends.lower[D - 1], ends.lower[D]);
+    std::swap(ends.upper[D - 1], ends.upper[D]);
+    const unsigned along_level = ends.direction >> (D - 1) & 1, along_step = ends.direction >> D & 1;
+    ends.direction = (ends.direction & ((1u << (D - 1)) - 1)) | along_step << (D - 1) | along_level << D;
+    return vertices_.locate(ends);
+  }
+
+  Place place_at(const Location& at) const {
+    Place place;
+    const auto& grid = vertices_.field().grid;
+    for (int axis = 0; axis < D - 1; ++axis) {
+      const bool at_lower = at.weight == 0 || at.lower[axis] == at.upper[axis];
+      const bool at_upper = at.weight == 1 || at.lower[axis] == at.upper[axis];
+      const double lower = grid.axes[axis].coordinate(at.lower[axis]);
+      const double upper = grid.axes[axis].coordinate(at.upper[axis]);
+      place.position.push_back(at_lower ? lower : at_upper ? upper : lower + at.weight * (upper - lower));
+      place.on_wall |= (at_lower && at.lower[axis] == 0) || (at_upper && at.upper[axis] == dims_[axis] - 1);
+    }
+    return place;
+  }
+
+  RegionVertices<T, D> vertices_;
+  std::array<std::int64_t, D + 1> dims_;
+  GridEdge rows_in_space_;
+};
+
+// Takes over a region between two steps.
+template <class T, int D>
+Result<Slab<D + 1>> make_region_slab(const RegionSlabSamples<T, D>& samples, const SimplexMesh<D + 1>& mesh,
+                                     bool has_missing) {
+  if (mesh.edges.size() > UINT32_MAX || mesh.simplices.size() > UINT32_MAX)
+    return Error{Code::out_of_memory, "the region between two steps has more than 2^32 corners"};
+  std::vector<std::pair<GridEdge, Vertex>> order;
+  for (const GridEdge edge : mesh.edges)
+    order.emplace_back(samples.with_time_last(edge), static_cast<Vertex>(order.size()));
+  std::ranges::sort(order);
+
+  Array<GridEdge> edges;
+  edges.reset(order.size());
+  std::vector<double> times(order.size());
+  std::vector<Vertex> number(order.size());
+  bool ties_below = false, ties_above = false;
+  for (Vertex vertex = 0; vertex < order.size(); ++vertex) {
+    const GridEdge edge = edges[vertex] = order[vertex].first;
+    number[order[vertex].second] = vertex;
+    if (!(edge / samples.row_length() >> D & 1)) {
+      times[vertex] = edge < samples.step_offset() ? 0 : 1;
+    } else {
+      times[vertex] = samples.time(edge);
+      ties_below |= times[vertex] == 0;
+      ties_above |= times[vertex] == 1;
+    }
+  }
+  std::vector<Vertex> corners(mesh.simplices.size());
+  for (std::size_t corner = 0; corner < corners.size(); ++corner)
+    corners[corner] = number[mesh.simplices[corner]];
+  Slab<D + 1> slab(std::move(edges), std::move(times), std::move(corners));
+  slab.region = true;
+  slab.ties_below = ties_below;
+  slab.ties_above = ties_above;
+  slab.has_missing = has_missing;
+  describe(slab, samples);
+  return slab;
+}
+
+} // namespace hyperiso::track_detail
