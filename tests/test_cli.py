@@ -821,6 +821,98 @@ class Animate(Case):
         self.assertEqual(run.code, 0)
         self.assertRegex(run.err, r"\Ahyperiso: warning: no surface[^\n]*\n\Z")
         self.assertEqual(self.files(), ["f_0.ply", "f_1.ply", "torus.nrrd"])
+class SlabBySlab(Case):
+    """A field larger than --memory is extracted step by step, to the same file."""
+
+    SMALL = ("--memory", "4M")  # the field takes 5 MB, a step 256 KB
+
+    def setUp(self):
+        super().setUp()
+        self.field = self.sample("torus-morph", "40,40,40,20")
+
+    def assert_same(self, *arguments, suffix=".vtu", memory=SMALL):
+        whole = self.ok("extract", *arguments, "--json", "-o", "whole" + suffix).json()
+        slabs = self.ok("extract", *arguments, "--json", "-o", "slabs" + suffix, *memory).json()
+        for key in ("vertices", "simplices", "active_cells"):
+            self.assertEqual(whole[key], slabs[key], key)
+        self.assertGreater(slabs["simplices"], 0)
+        whole, slabs = ((self.folder / (name + suffix)).read_bytes() for name in ("whole", "slabs"))
+        self.assertEqual(whole, slabs)
+        (self.folder / ("whole" + suffix)).unlink()
+        (self.folder / ("slabs" + suffix)).unlink()
+
+    def test_every_kind_of_input(self):
+        self.assert_same(self.field, "--iso", "0.5")
+        self.ok("convert", self.field, "-o", "packed.nrrd", "--compress")
+        self.assert_same("packed.nrrd", "--iso", "0.5")
+        self.ok("convert", self.field, "-o", "plain.npy")
+        self.assert_same("plain.npy", "--iso", "0.5", "--method", "simplicial", memory=("--memory", "5M"))
+        self.ok("convert", self.field, "-o", "series.pvd")
+        self.assert_same("series.pvd", "--iso", "0.5")
+        steps = sorted(name for name in self.files() if name.startswith("series_"))
+        self.assertEqual(len(steps), 20)
+        self.assert_same(*steps, "--iso", "0.5")
+
+    def test_part_of_a_field(self):
+        self.assert_same(self.field, "--iso", "0.5", "--crop", "3:,,:38", "--steps", "1:19")
+        self.assert_same(self.field, "--iso", "0.5", "--crop", ",20:21", suffix=".vtu", memory=("--memory", "1M"))
+
+    def test_a_volume_goes_along_its_last_axis(self):
+        self.ok("sample", "gyroid", "--dims", "64,64,300", "-o", "volume.nrrd")
+        for suffix in (".ply", ".stl", ".obj", ".off", ".vtp"):
+            self.assert_same("volume.nrrd", "--iso", "0.2", suffix=suffix)
+
+    def test_surface_that_does_not_fit_beside_the_field(self):
+        field = self.sample("noise", "20,20,20,20", "noise.nrrd")
+        self.assert_same(field, "--iso", "0.5", memory=("--memory", "20M"))
+
+    def test_several_isovalues_and_nothing_written(self):
+        surfaces = self.ok("extract", self.field, "--iso", "0.3,0.5", "--json", *self.SMALL).json()["surfaces"]
+        whole = self.ok("extract", self.field, "--iso", "0.3,0.5", "--json").json()["surfaces"]
+        self.assertEqual([s["simplices"] for s in surfaces], [s["simplices"] for s in whole])
+        self.ok("extract", self.field, "--iso", "0.3,0.5", "-o", "a.vtu", *self.SMALL)
+        self.assertEqual(self.files(), ["a_iso0.3.vtu", "a_iso0.5.vtu", self.field])
+
+    def test_to_a_pipe(self):
+        self.ok("extract", self.field, "--iso", "0.5", "-o", "whole.vtu")
+        done = subprocess.run([PROGRAM, "extract", self.field, "--iso", "0.5", "-o", "/dev/stderr", "--format", "vtu",
+                               "--quiet", *self.SMALL], capture_output=True, check=True)
+        self.assertEqual(done.stderr, (self.folder / "whole.vtu").read_bytes())
+
+    def test_measured_as_a_whole_if_that_fits(self):
+        self.ok("convert", self.field, "-o", "packed.nrrd", "--compress")
+        measure = self.ok("extract", "packed.nrrd", "--iso", "0.7", "--json", "--measure", "--memory", "5M").json()
+        self.assertEqual(measure["measure"],
+                         self.ok("extract", self.field, "--iso", "0.7", "--json", "--measure").json()["measure"])
+        self.assert_refused(1, "extract", "packed.nrrd", "--iso", "0.1", "--method", "simplicial", "--measure",
+                            *self.SMALL, words=["measured as a whole", "--memory"])
+
+    @unittest.skipUnless(HAS_VIEW, "built without the viewer")
+    def test_a_page_of_the_same_surface(self):
+        for options in ([], ["--max-size", "900K"]):
+            whole, slabs = (json.loads(Run("view", self.field, "--iso", "0.7", "-o", "page.html", "--json", "--payload", "mesh",
+                                           *options, *memory).out) for memory in ([], ["--memory", "5M"]))
+            self.assertEqual((whole["simplices"], whole["notes"]), (slabs["simplices"], slabs["notes"]))
+
+    def test_file_that_ends_too_soon_leaves_nothing(self):
+        self.ok("convert", self.field, "-o", "packed.nrrd", "--compress")
+        content = (self.folder / "packed.nrrd").read_bytes()
+        (self.folder / "packed.nrrd").write_bytes(content[:len(content) * 2 // 3])
+        self.assert_refused(2, "extract", "packed.nrrd", "--iso", "0.5", "-o", "out.vtu", *self.SMALL, words=["packed.nrrd"])
+
+    def test_no_room_for_two_steps(self):
+        self.assert_refused(1, "extract", self.field, "--iso", "0.5", "--memory", "900K", words=["two steps", "--memory"])
+
+    def test_empty_surface_is_warned_about(self):
+        run = Run("extract", self.field, "--iso", "7", *self.SMALL)
+        self.assertEqual(run.code, 0)
+        self.assertRegex(run.err, r"warning: no surface at isovalue 7: the values go from [^\n]+\n\Z")
+
+    def test_advice_names_options_that_the_verb_has(self):
+        run = Run("sample", "noise", "--dims", "200,200,200", "-o", "n.nrrd", "--memory", "10M")
+        self.assertEqual(run.code, 1)
+        self.assertIn("smaller --dims", run.err)
+        self.assertNotIn("--crop", run.err)
 
 
 class Interruption(Case):
@@ -843,6 +935,12 @@ class Interruption(Case):
         self.assertEqual((code, out), (130, b""))
         self.assertEqual(self.files(), [field, "out.vtu"])
         self.assertEqual((self.folder / "out.vtu").read_text(), "keep me")
+
+    def test_ctrl_c_while_writing_slabs_leaves_no_file(self):
+        field = self.sample("noise", "40,40,40,12")
+        code, out, _ = self.interrupt(self.unfinished, "extract", field, "--iso", "0.5", "-o", "out.vtu", "--memory", "30M")
+        self.assertEqual((code, out), (130, b""))
+        self.assertEqual(self.files(), [field])
 
     def test_ctrl_c_between_the_files_of_a_series_leaves_none(self):
         field = self.sample("noise", "40,40,40,4")

@@ -168,6 +168,35 @@ Status write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Wri
 Status check_mesh_format(int dimension, int simplex_dimension, const std::filesystem::path& path,
                          const WriteMeshOptions& options = {});
 
+/// Writes a mesh that comes in pieces, slab by slab (stream.hpp), and need never be in memory as a whole: the
+/// file that `write_mesh` would write, in every format. Until `finish` the arrays of the mesh lie in
+/// temporary files beside the target (beside a pipe or device: in the system's temporary folder), which are
+/// removed in any case; then they are joined. Memory: a few hundred kilobytes. Room on the disk: that of the
+/// arrays, beside the file.
+class MeshFileWriter {
+ public:
+  /// Opens the temporary files. Errors: file_unwritable; file_unsupported, as `check_mesh_format` gives it.
+  static Result<MeshFileWriter> create(int dimension, int simplex_dimension,
+                                       const std::filesystem::path& path,
+                                       const WriteMeshOptions& options = {});
+  MeshFileWriter(MeshFileWriter&&) noexcept;
+  MeshFileWriter& operator=(MeshFileWriter&&) noexcept;
+  ~MeshFileWriter();
+
+  /// Adds vertices and simplices, whose corners are vertices of any piece so far, numbered on from piece to
+  /// piece. Positions are f32 in all pieces or f64 in all. `edges` and `grid_axes` are written if the first
+  /// piece has them; active cells add up. Errors: file_unwritable (the disk is full); invalid_argument if the
+  /// piece contradicts the others or itself, or has attributes; out_of_memory.
+  Status append(const Mesh& piece);
+  /// Writes the file. Errors: those of `write_mesh`. Call once, last.
+  Status finish();
+
+ private:
+  struct Parts;
+  explicit MeshFileWriter(std::unique_ptr<Parts> parts);
+  std::unique_ptr<Parts> parts_;
+};
+
 /// Reads a mesh, by the suffix of its name. vtu and vtp that write_mesh wrote come back as they were, with
 /// attributes and, if they were kept, grid edges and axes; where another program has changed the mesh so that
 /// the edges fit no grid any more, they are left out. vtu and vtp by others may be ascii, inline or appended,

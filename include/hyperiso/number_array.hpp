@@ -21,6 +21,9 @@ class Buffer {
   Buffer(const Buffer& other);
   Buffer(Buffer&& other) noexcept { swap(other); }
   Buffer& operator=(Buffer other) noexcept { return swap(other), *this; }
+  /// The first `bytes` of an open file, read where they are looked at; changes stay in memory. The file may
+  /// be closed. Throws std::bad_alloc.
+  static Buffer of_file(int descriptor, std::size_t bytes);
   ~Buffer();
 
   /// Room for `bytes`, contents undefined. Keeps the memory it has if that is enough. Throws std::bad_alloc.
@@ -38,10 +41,13 @@ class Buffer {
     std::swap(data_, other.data_);
     std::swap(size_, other.size_);
     std::swap(capacity_, other.capacity_);
+    std::swap(of_file_, other.of_file_);
   }
+  void release();
   void* data_ = nullptr;
   std::size_t size_ = 0;
   std::size_t capacity_ = 0;
+  bool of_file_ = false;
 };
 
 /// An array in such memory: elements that nobody has set have undefined values.
@@ -55,6 +61,11 @@ class Array {
   void reset(std::size_t size) { buffer_.reset(bytes_of(size)), size_ = size; }   ///< contents undefined
   void resize(std::size_t size) { buffer_.resize(bytes_of(size)), size_ = size; } ///< keeps the contents
   void clear() { size_ = 0; }
+  /// The elements in `buffer`.
+  void take(Buffer buffer) {
+    buffer_ = std::move(buffer);
+    size_ = buffer_.size() / sizeof(T);
+  }
   void push_back(const T& value) {
     const T copy = value; // `value` may be an element
     resize(size_ + 1);
@@ -106,6 +117,12 @@ class NumberArray {
   void resize(std::size_t size) {
     buffer_.resize(bytes_of(size, wide_));
     size_ = size;
+  }
+  /// The elements in `buffer`.
+  void take(Buffer buffer, bool wide) {
+    buffer_ = std::move(buffer);
+    wide_ = wide;
+    size_ = buffer_.size() / (wide ? sizeof(Wide) : sizeof(Narrow));
   }
   std::size_t size() const { return size_; }
   bool wide() const { return wide_; }

@@ -3,6 +3,7 @@
 #include "cli/manual.hpp"
 #include "cli/parse.hpp"
 #include "cli/seed.hpp"
+#include "cli/steps.hpp"
 #include "core/text.hpp"
 #include "hyperiso/seeds.hpp"
 
@@ -97,8 +98,9 @@ Status repeat(int times, const Progress& progress, double& seconds, Work&& work)
   return {};
 }
 
-Surface make_surface(const Extract& options, const Field& field, const std::vector<NamedField>& others,
+Surface make_surface(const Extract& options, const LoadedField& loaded, const std::vector<NamedField>& others,
                      double isovalue, const std::string& path, ExtractOptions extraction, FileGroup& files) {
+  const Field& field = loaded.field;
   extraction.keep_edges = !path.empty() || options.data.from_field();
   double extract_seconds = 0, add_seconds = 0;
   std::optional<Visited> visited;
@@ -122,6 +124,100 @@ Surface make_surface(const Extract& options, const Field& field, const std::vect
   if (mesh.simplex_count() == 0 && !options.printing.quiet) print_warning(why_empty(field, isovalue));
   Surface surface{isovalue, finish(mesh, options, field.info, path, files), visited};
   surface.outcome.extract_seconds = extract_seconds + add_seconds;
+  surface.outcome.read_seconds = loaded.read_seconds;
+  return surface;
+}
+
+// Data at the vertices come from the field as a whole, and seeds lead through it.
+bool can_come_by_slabs(const Extract& options, const FieldInfo& info, const ExtractOptions& extraction) {
+  return can_stream(info, extraction) && !options.data.from_field() && options.data.colour_by.empty() &&
+         options.seeds.empty();
+}
+
+// Nothing if that takes too much memory.
+std::optional<Surface> surface_in_memory(const Extract& options, const LoadedField& loaded, double isovalue,
+                                         const std::string& path, const ExtractOptions& extraction,
+                                         FileGroup& files) {
+  try {
+    return make_surface(options, loaded, {}, isovalue, path, extraction, files);
+  } catch (const Failure& failure) {
+    if (failure.error.code != Code::out_of_memory) throw;
+    return std::nullopt;
+  }
+}
+
+// Slab by slab, to the file: neither the field nor its surface is in memory as a whole.
+Outcome write_slabs(const Extract& options, StepSource& steps, double isovalue, const std::string& path,
+                    const ExtractOptions& extraction, FileGroup& files) {
+  const FieldInfo& info = steps.info();
+  Outcome outcome;
+  outcome.simplex_dimension = info.dimension() - 1;
+  outcome.path = path;
+  std::optional<MeshFileWriter> writer;
+  if (!path.empty())
+    writer.emplace(take(MeshFileWriter::create(info.dimension(), info.dimension() - 1, path,
+                                               options.output.write_options(info.axes, files))));
+  take(stream(
+      steps, isovalue,
+      [&](SurfaceSlab& slab) -> Status {
+        outcome.vertices += slab.mesh.vertex_count();
+        outcome.simplices += slab.mesh.simplex_count();
+        outcome.active_cells += slab.mesh.active_cells;
+        if (!writer) return {};
+        const Stopwatch writing;
+        if (info.world) transform(slab.mesh, *info.world);
+        const Status written = writer->append(slab.mesh);
+        outcome.write_seconds += writing.seconds();
+        return written;
+      },
+      extraction));
+  if (!writer) return outcome;
+  const Stopwatch writing;
+  const ProgressBar bar("write", options.printing.quiet);
+  take(writer->finish());
+  outcome.write_seconds += writing.seconds();
+  return outcome;
+}
+
+// What is measured is needed as a whole.
+Outcome measure_slabs(const Extract& options, StepSource& steps, double isovalue, const std::string& path,
+                      const ExtractOptions& extraction, FileGroup& files) {
+  auto mesh = collect_surface(steps, isovalue, extraction);
+  if (!mesh && mesh.error().code == Code::out_of_memory)
+    throw Failure{{Code::out_of_memory, mesh.error().message + ", and is to be measured as a whole"}};
+  Mesh surface = take(std::move(mesh));
+  if (steps.info().world) transform(surface, *steps.info().world);
+  return finish(surface, options, steps.info(), path, files);
+}
+
+Surface stream_surface(const Extract& options, const OpenedField& opened, double isovalue,
+                       const std::string& path, FileGroup& files, ExtractOptions extraction) {
+  StepsWithoutFlatAxes selected(*opened.steps);
+  std::optional<FieldSteps> within; // one step is gone through along its own last axis
+  if (selected.info().axes.back().count == 1) within.emplace(load_field(options, opened).field);
+  StepSource& steps = within ? static_cast<StepSource&>(*within) : selected;
+  extraction.keep_edges = !path.empty();
+  extraction.memory_limit = memory_beside_steps(steps.info(), extraction.memory_limit);
+  ProgressBar bar("extract", options.printing.quiet);
+  extraction.progress = bar.callback();
+  const bool whole = options.measure || options.self_intersections;
+  double fastest = HUGE_VAL; // without what is written
+  for (int time = 1; time < repeat_count(options); ++time) {
+    const double read_until = opened.steps->read_seconds();
+    const Stopwatch watch;
+    take(stream(
+        steps, isovalue, [](SurfaceSlab&) { return Status{}; }, extraction));
+    fastest = std::min(fastest, watch.seconds() - (opened.steps->read_seconds() - read_until));
+  }
+  const double read_before = opened.steps->read_seconds();
+  const Stopwatch watch;
+  Surface surface{isovalue,
+                  (whole ? measure_slabs : write_slabs)(options, steps, isovalue, path, extraction, files),
+                  std::nullopt};
+  Outcome& outcome = surface.outcome;
+  outcome.read_seconds = opened.steps->read_seconds() - read_before;
+  outcome.extract_seconds = std::min(fastest, watch.seconds() - outcome.read_seconds - outcome.write_seconds);
+  if (outcome.simplices == 0 && !options.printing.quiet) print_warning(why_empty(steps, isovalue));
   return surface;
 }
 
@@ -161,26 +257,39 @@ void print_surfaces(const std::vector<Surface>& surfaces, const Extract& options
 
 int run(const Extract& options) {
   const std::vector<double> isovalues = parse_isovalues(options.iso);
-  (void)options.surface.extract_options(options.machine); // wrong ones are told before anything is read
+  const ExtractOptions given = options.surface.extract_options(options.machine); // told before reading
   const int times = repeat_count(options);
-  const auto [field, read_seconds] = load_field(options, lowest_dimension, highest_extracted, 1);
+  const OpenedField opened = open_field(options, lowest_dimension, highest_extracted, 1);
+  const bool can_come = can_come_by_slabs(options, opened.info, given);
+  // Memory-mapped fields could be looked at as a whole: what is larger than the memory is not.
+  std::optional<LoadedField> loaded;
+  if (!can_come || opened.info.bytes() <= given.memory_limit) loaded = load_field(options, opened);
   const std::vector<NamedField> others = load_others(options);
 
-  Reused reused;
+  std::optional<Reused> reused(std::in_place);
   FileGroup files;
   std::vector<Surface> surfaces;
   for (const double isovalue : isovalues) {
     std::string path = options.output.path;
     if (options.output.wanted() && isovalues.size() > 1) path = with_suffix(path, "iso" + shortest(isovalue));
-    ExtractOptions extraction = options.surface.extract_options(options.machine);
-    extraction.workspace = &reused.workspace;
-    // Who repeats wants to know what a whole extraction costs.
-    if (isovalues.size() > 1 && times == 1) extraction.ranges = &reused.ranges;
-    surfaces.push_back(make_surface(options, field, others, isovalue, path, extraction, files));
-    surfaces.back().outcome.read_seconds = read_seconds;
+    std::optional<Surface> surface;
+    if (loaded) {
+      ExtractOptions extraction = options.surface.extract_options(options.machine);
+      extraction.workspace = &reused->workspace;
+      // Who repeats wants to know what a whole extraction costs.
+      if (isovalues.size() > 1 && times == 1) extraction.ranges = &reused->ranges;
+      surface = can_come ? surface_in_memory(options, *loaded, isovalue, path, extraction, files)
+                         : make_surface(options, *loaded, others, isovalue, path, extraction, files);
+    }
+    if (!surface) { // field and surface together are too much
+      loaded.reset();
+      reused.reset();
+      surface = stream_surface(options, opened, isovalue, path, files, given);
+    }
+    surfaces.push_back(std::move(*surface));
   }
   take(files.commit());
-  print_surfaces(surfaces, options, field.info);
+  print_surfaces(surfaces, options, opened.info);
   return 0;
 }
 
@@ -228,6 +337,11 @@ Command extract_command(CLI::App& program) {
         "from the "
         "inside; the mesh is closed except where it meets the end of the data. NaN samples are no data: no "
         "surface touches their cells.",
+        "A field that does not fit into --memory, or not together with its surface, is read step by step "
+        "(along "
+        "the last axis), and the surface is written as it is found: two steps and the surface between them "
+        "are in "
+        "memory. The file is the same.",
         "Without -o nothing is written. 4D surfaces are written as .vtu, with the time of each vertex as "
         "point data "
         "t and all four coordinates as xyzt; cut them with 'hyperiso slice' or with ParaView's Contour of "

@@ -4,18 +4,26 @@
 
 namespace hyperiso::cli {
 
-LoadedField load_field(const FieldMeshOptions& options, int lowest, int highest, int codimension) {
-  const auto reader = options.input.open(options.machine);
-  const Selection selection = options.input.selection(reader->info());
-  const int dimension = without_flat_axes(selected(reader->info(), selection)).dimension();
+OpenedField open_field(const FieldMeshOptions& options, int lowest, int highest, int codimension) {
+  OpenedField opened{std::make_unique<SelectedSteps>(options.input.open(options.machine), options.input), {}};
+  opened.info = without_flat_axes(opened.steps->info());
+  const int dimension = opened.info.dimension();
   check_dimension(dimension, lowest, highest, "the field");
   if (options.output.wanted()) options.output.check(dimension, dimension - codimension, options.output.path);
   options.data.check(options.output, options.output.path);
+  return opened;
+}
 
+LoadedField load_field(const FieldMeshOptions& options, const OpenedField& opened) {
+  const ProgressBar bar("read", options.printing.quiet);
   const Stopwatch reading;
-  LoadedField loaded{without_flat_axes(read_selection(*reader, selection, options.printing.quiet))};
+  LoadedField loaded{without_flat_axes(take(opened.steps->read(0, opened.steps->info().axes.back().count)))};
   loaded.read_seconds = reading.seconds();
   return loaded;
+}
+
+LoadedField load_field(const FieldMeshOptions& options, int lowest, int highest, int codimension) {
+  return load_field(options, open_field(options, lowest, highest, codimension));
 }
 
 std::vector<NamedField> load_others(const FieldMeshOptions& options) {

@@ -19,6 +19,16 @@ struct FieldMeshOptions {
   MachineOptions machine;
 };
 
+// A field that is open but not yet read.
+struct OpenedField {
+  std::unique_ptr<SelectedSteps> steps;
+  FieldInfo info; // without its axes of one sample
+};
+
+// Opens the field that the options select. Fails if it does not have `lowest` to `highest` dimensions, or if
+// the file to write cannot hold simplices of `codimension` less than that.
+OpenedField open_field(const FieldMeshOptions& options, int lowest, int highest, int codimension);
+
 // A field as it was read, without its axes of one sample.
 struct LoadedField {
   Field field;
@@ -28,6 +38,7 @@ struct LoadedField {
 // Reads the field that the options select. Fails, before its samples are read, if it does not have `lowest`
 // to `highest` dimensions, or if the file to write cannot hold simplices of `codimension` less than that.
 LoadedField load_field(const FieldMeshOptions& options, int lowest, int highest, int codimension);
+LoadedField load_field(const FieldMeshOptions& options, const OpenedField& opened);
 
 // Reads the fields of --with, as the options select of the field itself.
 std::vector<NamedField> load_others(const FieldMeshOptions& options);

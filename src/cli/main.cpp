@@ -67,6 +67,15 @@ void check_verb(const CLI::App& program, const std::vector<std::string>& argumen
   fail_usage(text("there is no verb '", word, "'; there are ", verbs));
 }
 
+// What the verb has to offer where memory does not suffice.
+std::string memory_advice(const CLI::App& verb) {
+  const auto has = [&](const char* option) { return verb.get_option_no_throw(option) != nullptr; };
+  if (!has("--memory")) return {};
+  std::string advice = "; --memory sets the limit";
+  if (has("--crop")) return advice + ", --crop and --steps take less";
+  return has("--dims") ? advice + ", smaller --dims take less" : advice;
+}
+
 int run(std::vector<std::string> arguments) {
   if (arguments.empty()) {
     print_usage(short_help);
@@ -99,12 +108,17 @@ int run(std::vector<std::string> arguments) {
     fail_usage(
         text(error.what(), "; see 'hyperiso ", command ? command->app->get_name() + " " : "", "--help'"));
   }
-  return chosen(commands)->run();
+  const Command& command = *chosen(commands);
+  try {
+    return command.run();
+  } catch (Failure& failure) {
+    if (failure.error.code == Code::out_of_memory) failure.error.message += memory_advice(*command.app);
+    throw;
+  }
 }
 
 int report(const Error& error) {
-  const bool memory = error.code == Code::out_of_memory;
-  print_error(error.message + (memory ? "; --memory sets the limit, --crop and --steps take less" : ""));
+  print_error(error.message);
   if (error.code == Code::cancelled) return 130;
   return is_usage_error(error.code) ? exit_usage : exit_failure;
 }

@@ -43,8 +43,8 @@ void PrintOptions::add_to(CLI::App& app) {
 
 void MachineOptions::add_to(CLI::App& app) {
   add_text(app, "--memory", memory, "SIZE", machine_group,
-           "the most memory to use, for example 800M or 4G (K, M, G, T: powers of 1024); what would take "
-           "more is an error. Left out: 80 % of what is free");
+           "the most memory to use, for example 800M or 4G (K, M, G, T: powers of 1024); what takes more and "
+           "cannot be done step by step is an error. Left out: 80 % of what is free");
   add_text(app, "--threads", threads, "N", machine_group,
            "the most threads to use; left out: one for each processor. The result does not depend on it");
 }
@@ -64,8 +64,11 @@ std::uint64_t MachineOptions::memory_limit() const {
 
 std::uint64_t MachineOptions::memory_left() const {
   if (memory.empty()) return memory_limit(); // what is free now leaves out what is held
-  const std::uint64_t limit = memory_limit();
-  return limit - std::min(limit, held_memory());
+  const std::uint64_t limit = memory_limit(), held = held_memory();
+  if (limit <= held)
+    throw Failure{{Code::out_of_memory, text("the program itself holds ", byte_size(held),
+                                             ", the memory limit is ", byte_size(limit))}};
+  return limit - held;
 }
 
 void FieldOptions::add_to(CLI::App& app, const std::string& instead) {

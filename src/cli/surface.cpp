@@ -202,13 +202,27 @@ std::string with_number(const std::string& option, const std::string& path, std:
   return result;
 }
 
-std::string why_empty(const Field& field, double isovalue) {
-  StatisticsCollector collector;
-  collector.add(field);
-  const Statistics statistics = std::move(collector).finish();
+namespace {
+
+std::string why_empty(const Statistics& statistics, double isovalue) {
   if (statistics.finite() == 0) return text("no surface: the field has no finite sample");
   return text("no surface at isovalue ", isovalue, ": the values go from ", statistics.minimum, " to ",
               statistics.maximum);
+}
+
+} // namespace
+
+std::string why_empty(const Field& field, double isovalue) {
+  StatisticsCollector collector;
+  collector.add(field);
+  return why_empty(std::move(collector).finish(), isovalue);
+}
+
+std::string why_empty(StepSource& steps, double isovalue) {
+  StatisticsCollector collector;
+  for (std::int64_t step = 0; step < steps.info().axes.back().count; ++step)
+    collector.add(take(steps.read(step, step + 1)));
+  return why_empty(std::move(collector).finish(), isovalue);
 }
 
 } // namespace hyperiso::cli

@@ -62,5 +62,6 @@ std::string with_number(const std::string& option, const std::string& path, std:
 
 // A warning for an empty surface: that the isovalue is outside the range of the field, if it is.
 std::string why_empty(const Field& field, double isovalue);
+std::string why_empty(StepSource& steps, double isovalue);
 
 } // namespace hyperiso::cli

@@ -5,6 +5,8 @@
 #include "cli/manual.hpp"
 #include "cli/options.hpp"
 #include "cli/parse.hpp"
+#include "cli/point_data.hpp"
+#include "cli/steps.hpp"
 #include "cli/surface.hpp"
 #include "core/memory.hpp"
 #include "hyperiso/track.hpp"
@@ -73,6 +75,35 @@ Field halved(Field field) {
   return field;
 }
 
+// Of a field that does not fit into memory: every `every`-th sample along the axes of space, a power of two.
+class ThinnedSteps final : public StepSource {
+ public:
+  ThinnedSteps(StepSource& steps, std::int64_t every) : steps_(steps), every_(every) {
+    Field whole{steps.info(), nullptr, std::vector<std::int64_t>(steps.info().axes.size(), 1)};
+    info_ = thinned(std::move(whole)).info;
+  }
+  const FieldInfo& info() const override { return info_; }
+  // One step at a time.
+  Result<Field> read(std::int64_t begin, std::int64_t end) override {
+    const std::int64_t step = info_.has_time ? begin : begin * every_;
+    auto field = steps_.read(step, step + 1);
+    if (!field) return field;
+    Field thin = thinned(*std::move(field));
+    thin.info.axes.back() = info_.axes.back().cropped(begin, end);
+    return thin;
+  }
+
+ private:
+  Field thinned(Field field) const {
+    for (std::int64_t times = 1; times < every_; times *= 2) field = halved(std::move(field));
+    return field;
+  }
+
+  StepSource& steps_;
+  std::int64_t every_;
+  FieldInfo info_;
+};
+
 std::unique_ptr<Mesh> surface_of(const View& options, const Field& field, double isovalue) {
   ExtractOptions extraction = options.surface.extract_options(options.machine);
   extraction.keep_edges = options.track;
@@ -110,9 +141,8 @@ void fit(const View& options, std::uint64_t size, double isovalue, Field& field,
   if (times > 1) tell(options, fewer_samples(size, times), content);
 }
 
-void track_components(const View& options, const Field& field, double isovalue, Content& content) {
-  if (!field.info.has_time) fail_usage("--track: no axis of the field is time");
-  FieldSteps steps(field);
+void track_components(const View& options, StepSource& steps, double isovalue, Content& content) {
+  if (!steps.info().has_time) fail_usage("--track: no axis of the field is time");
   TrackOptions tracking;
   tracking.extraction = options.surface.extract_options(options.machine);
   ProgressBar bar("track", options.printing.quiet);
@@ -121,18 +151,61 @@ void track_components(const View& options, const Field& field, double isovalue, 
   content.page.tracking = &content.tracking;
 }
 
+// What the page says of the field that its surface is of.
+void describe(const FieldInfo& info, Content& content) {
+  content.page.axes = info.axes;
+  content.page.has_time = info.has_time;
+  content.page.field_name = info.name;
+  content.page.world = info.world;
+  if (info.world) transform(*content.mesh, *info.world);
+}
+
+// Of a field that does not fit into memory, step by step; the surface has to.
+void stream_field(const View& options, std::uint64_t size, SelectedSteps& steps, Content& content) {
+  const double isovalue = *content.page.isovalue;
+  ExtractOptions extraction = options.surface.extract_options(options.machine);
+  extraction.keep_edges = options.track;
+  extraction.memory_limit = memory_beside_steps(steps.info(), extraction.memory_limit);
+  const Stopwatch watch;
+  std::optional<ThinnedSteps> thinned;
+  int times = 1;
+  for (;; times *= 2) {
+    thinned.emplace(steps, times);
+    ProgressBar bar("extract", options.printing.quiet);
+    extraction.progress = bar.callback();
+    content.mesh.reset();
+    content.mesh = std::make_unique<Mesh>(take(collect_surface(*thinned, isovalue, extraction)));
+    if (expected_bytes(content) <= static_cast<double>(size) || times == 1 << most_halvings) break;
+  }
+  if (times > 1) tell(options, fewer_samples(size, times), content);
+  if (content.mesh->simplex_count() == 0 && !options.printing.quiet)
+    print_warning(why_empty(steps, isovalue));
+  if (options.track) track_components(options, *thinned, isovalue, content);
+  content.read_seconds = steps.read_seconds();
+  content.extract_seconds = watch.seconds() - content.read_seconds;
+  describe(thinned->info(), content);
+}
+
+Field whole_field(SelectedSteps& steps, const View& options) {
+  const ProgressBar bar("read", options.printing.quiet);
+  return take(steps.read(0, steps.info().axes.back().count));
+}
+
 void read_field(const View& options, std::uint64_t size, Content& content) {
   const std::vector<double> isovalues = parse_isovalues(options.iso);
   if (isovalues.size() != 1) fail_usage("--iso: a page shows one isovalue");
-  (void)options.surface.extract_options(options.machine); // wrong ones are told before anything is read
-  const auto reader = options.input.open(options.machine);
-  check_dimension(reader->info().dimension(), lowest_shown, highest_dimension, "the field");
-  const Stopwatch reading;
-  Field field = read_selection(*reader, options.input.selection(reader->info()), options.printing.quiet);
-  content.read_seconds = reading.seconds();
-  check_axes(field.info);
-
+  const ExtractOptions extraction = options.surface.extract_options(options.machine); // told before reading
+  SelectedSteps steps(options.input.open(options.machine), options.input);
+  const FieldInfo& info = steps.info();
+  check_dimension(info.dimension(), lowest_shown, highest_dimension, "the field");
+  check_axes(info);
   content.page.isovalue = isovalues[0];
+  const bool of_surface = options.payload.empty() || options.payload == "mesh";
+  if (of_surface && info.bytes() > extraction.memory_limit && can_stream(info, extraction))
+    return stream_field(options, size, steps, content);
+  Field field = whole_field(steps, options);
+  content.read_seconds = steps.read_seconds();
+
   const Stopwatch extracting;
   if (options.payload == "band" || options.payload == "field") {
     content.samples = options.payload == "band" ? PageSamples::band : PageSamples::all;
@@ -148,18 +221,16 @@ void read_field(const View& options, std::uint64_t size, Content& content) {
   if (content.mesh) fit(options, size, isovalues[0], field, content);
   if (content.mesh && content.mesh->simplex_count() == 0 && !options.printing.quiet)
     print_warning(why_empty(field, isovalues[0]));
-  if (options.track) track_components(options, field, isovalues[0], content);
+  if (options.track) {
+    FieldSteps thinned(field);
+    track_components(options, thinned, isovalues[0], content);
+  }
   content.extract_seconds = extracting.seconds();
   if (content.samples) {
     content.field = std::move(field);
     return;
   }
-
-  content.page.axes = field.info.axes;
-  content.page.has_time = field.info.has_time;
-  content.page.field_name = field.info.name;
-  content.page.world = field.info.world;
-  if (field.info.world) transform(*content.mesh, *field.info.world);
+  describe(field.info, content);
 }
 
 void read_surface(const View& options, Content& content) {

@@ -20,6 +20,7 @@ std::size_t rounded_up(std::size_t bytes, std::size_t unit) {
 
 bool is_mapped(std::size_t) { return false; }
 void* map(std::size_t) { throw std::bad_alloc(); }
+void* map_file(int, std::size_t) { throw std::bad_alloc(); }
 void unmap(void*, std::size_t) {}
 bool move_pages(void*, void*, std::size_t) { return false; }
 
@@ -41,6 +42,12 @@ void* map(std::size_t capacity) {
 #ifdef MADV_HUGEPAGE
   madvise(data, capacity, MADV_HUGEPAGE); // a hint: without it the buffer is merely slower to fill
 #endif
+  return data;
+}
+
+void* map_file(int descriptor, std::size_t bytes) {
+  void* data = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE, descriptor, 0);
+  if (data == MAP_FAILED) throw std::bad_alloc();
   return data;
 }
 
@@ -66,13 +73,6 @@ std::size_t capacity_for(std::size_t bytes) {
   return is_mapped(bytes) ? rounded_up(bytes, huge_page) : rounded_up(bytes, 64);
 }
 
-void release(void* data, std::size_t capacity) {
-  if (is_mapped(capacity))
-    unmap(data, capacity);
-  else
-    ::operator delete (data, std::align_val_t{64});
-}
-
 } // namespace
 
 Buffer::Buffer(const Buffer& other) {
@@ -80,15 +80,30 @@ Buffer::Buffer(const Buffer& other) {
   if (size_ > 0) std::memcpy(data_, other.data_, size_);
 }
 
-Buffer::~Buffer() {
-  if (data_) release(data_, capacity_);
+Buffer::~Buffer() { release(); }
+
+Buffer Buffer::of_file(int descriptor, std::size_t bytes) {
+  Buffer buffer;
+  if (bytes == 0) return buffer;
+  buffer.data_ = map_file(descriptor, bytes);
+  buffer.size_ = buffer.capacity_ = bytes;
+  buffer.of_file_ = true;
+  return buffer;
+}
+
+void Buffer::release() {
+  if (data_ && (of_file_ || is_mapped(capacity_)))
+    unmap(data_, capacity_);
+  else if (data_)
+    ::operator delete (data_, std::align_val_t{64});
+  data_ = nullptr;
+  size_ = capacity_ = 0;
+  of_file_ = false;
 }
 
 void Buffer::reset(std::size_t bytes) {
   if (bytes > capacity_) {
-    if (data_) release(data_, capacity_);
-    data_ = nullptr;
-    size_ = capacity_ = 0;
+    release();
     const std::size_t capacity = capacity_for(bytes);
     data_ = allocate(capacity);
     capacity_ = capacity;
@@ -100,11 +115,11 @@ void Buffer::resize(std::size_t bytes) {
   if (bytes > capacity_) {
     const std::size_t capacity = capacity_for(std::max(bytes, capacity_ + capacity_ / 2));
     void* data = allocate(capacity);
-    const bool moved = is_mapped(capacity_) && move_pages(data_, data, capacity_);
-    if (data_ && !moved) {
+    if (!of_file_ && is_mapped(capacity_) && move_pages(data_, data, capacity_))
+      data_ = nullptr; // its pages are the new ones
+    else if (data_)
       std::memcpy(data, data_, size_);
-      release(data_, capacity_);
-    }
+    release();
     data_ = data;
     capacity_ = capacity;
   }

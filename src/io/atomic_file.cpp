@@ -96,7 +96,7 @@ AtomicFile::AtomicFile(AtomicFile&& other) noexcept
       temporary_(std::move(other.temporary_)), unfinished_(std::exchange(other.unfinished_, nullptr)),
       descriptor_(std::exchange(other.descriptor_, -1)), error_number_(other.error_number_),
       buffer_(std::move(other.buffer_)), has_gap_(other.has_gap_), gap_in_buffer_(other.gap_in_buffer_),
-      gap_in_file_(other.gap_in_file_), flushed_(other.flushed_) {}
+      gap_in_file_(other.gap_in_file_), flushed_(other.flushed_), on_flush_(std::move(other.on_flush_)) {}
 
 AtomicFile::~AtomicFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
@@ -124,6 +124,17 @@ Result<AtomicFile> AtomicFile::create(const std::filesystem::path& target) {
   return file;
 }
 
+Result<AtomicFile> AtomicFile::create_scratch(const std::filesystem::path& target) {
+  struct stat there {};
+  const bool in_place =
+      descriptor_named(target) || (::stat(target.c_str(), &there) == 0 && !S_ISREG(there.st_mode));
+  if (!in_place) return create(target);
+  std::error_code none;
+  auto file = create(std::filesystem::temp_directory_path(none) / "hyperiso");
+  if (file) file->target_ = target;
+  return file;
+}
+
 void AtomicFile::open_in_place() {
   const auto named = descriptor_named(target_);
   descriptor_ =
@@ -142,7 +153,7 @@ void AtomicFile::open_temporary() {
   std::random_device random; // no other process, on this machine or another, may pick the same name
   temporary_ = replaces_.parent_path() / text(".hyperiso-", std::hex, random(), random(), ".part");
   unfinished_ = register_unfinished(temporary_); // before it exists: a signal finds it at any moment
-  descriptor_ = open_retrying(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0666);
+  descriptor_ = open_retrying(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL, 0666);
   if (descriptor_ < 0) error_number_ = errno;
 }
 
@@ -183,9 +194,16 @@ void AtomicFile::fill_gap(std::string_view bytes) {
   if (!failed() && ::lseek(descriptor_, 0, SEEK_END) < 0) error_number_ = errno;
 }
 
+Result<Buffer> AtomicFile::read_back() {
+  flush();
+  if (failed()) return error();
+  return Buffer::of_file(descriptor_, static_cast<std::size_t>(flushed_));
+}
+
 void AtomicFile::flush() {
   write_through(buffer_.data(), buffer_.size());
   buffer_.clear();
+  if (on_flush_) on_flush_();
 }
 
 void AtomicFile::write_through(const char* data, std::size_t bytes) {
@@ -222,6 +240,11 @@ Status AtomicFile::commit(FileGroup* group) {
     else
       error_number_ = errno;
   }
+  if (failed()) return error();
+  return {};
+}
+
+Status AtomicFile::status() const {
   if (failed()) return error();
   return {};
 }

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string_view>
 #include <vector>
 
@@ -25,6 +26,9 @@ class AtomicFile {
  public:
   // Error: file_unwritable, naming the target and the system's reason.
   static Result<AtomicFile> create(const std::filesystem::path& target);
+  // A temporary file for what will be needed to write the target: beside it, or where the system keeps such
+  // files if the target has no place in a folder. It is never committed. The same errors.
+  static Result<AtomicFile> create_scratch(const std::filesystem::path& target);
   AtomicFile(AtomicFile&& other) noexcept;
   AtomicFile& operator=(AtomicFile&&) = delete;
   ~AtomicFile();
@@ -33,6 +37,7 @@ class AtomicFile {
   void write(const void* data, std::size_t bytes);
   void write(std::string_view characters) { write(characters.data(), characters.size()); }
   bool failed() const { return error_number_ != 0; }
+  Status status() const; // the failure, as `commit` would report it
   // Of the file that is written to, for another program to write it; nothing may have been written here.
   int descriptor() const { return descriptor_; }
 
@@ -40,6 +45,13 @@ class AtomicFile {
   // cannot seek, what follows the gap stays in memory until it is filled.
   void leave_gap(std::size_t bytes);
   void fill_gap(std::string_view bytes);
+
+  // What was written so far to a temporary file. Error: file_unwritable. Throws std::bad_alloc.
+  Result<Buffer> read_back();
+  std::uint64_t written() const { return flushed_ + buffer_.size(); } // bytes
+
+  // Is called every few hundred kilobytes, for who writes from pages that need not stay in memory.
+  void set_on_flush(std::function<void()> on_flush) { on_flush_ = std::move(on_flush); }
 
   // Flushes to the device, closes and renames; with a group, the group renames, and the
   // file waits for that without a descriptor or a buffer. Error: file_unwritable. Call
@@ -66,6 +78,7 @@ class AtomicFile {
   std::size_t gap_in_buffer_ = 0; // in place
   std::uint64_t gap_in_file_ = 0; // in a temporary file
   std::uint64_t flushed_ = 0;     // bytes
+  std::function<void()> on_flush_;
 };
 
 } // namespace hyperiso

@@ -16,8 +16,11 @@ class PlainSource final : public ByteSource {
     std::memcpy(out.data(), file_->bytes().data() + offset_ + offset, out.size());
     return {};
   }
-  std::shared_ptr<const std::byte> in_place(std::uint64_t offset, std::uint64_t) override {
-    return {file_, file_->bytes().data() + offset_ + offset};
+  // Steps that nobody holds any more do not stay in memory.
+  std::shared_ptr<const std::byte> in_place(std::uint64_t offset, std::uint64_t bytes) override {
+    return {file_->bytes().data() + offset_ + offset, [file = file_, bytes](const std::byte* first) {
+              file->release({first, bytes});
+            }};
   }
 
  private:

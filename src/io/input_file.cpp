@@ -46,6 +46,14 @@ Result<std::shared_ptr<const InputFile>> InputFile::open(const std::filesystem::
   return std::shared_ptr<const InputFile>(new InputFile(path, {static_cast<const std::byte*>(data), size}));
 }
 
+void InputFile::release(std::span<const std::byte> bytes) const {
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  const auto begin = (reinterpret_cast<std::uintptr_t>(bytes.data()) + page - 1) / page * page;
+  const auto end = reinterpret_cast<std::uintptr_t>(bytes.data() + bytes.size()) / page * page;
+  if (begin < end)
+    madvise(reinterpret_cast<void*>(begin), end - begin, MADV_DONTNEED); // read again if needed
+}
+
 InputFile::~InputFile() { munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size()); }
 
 } // namespace hyperiso

@@ -26,6 +26,8 @@ class InputFile {
   const std::filesystem::path& path() const { return path_; }
   std::uint64_t size() const { return bytes_.size(); }
   std::span<const std::byte> bytes() const { return bytes_; }
+  // Nobody will look at these bytes soon: the pages that hold nothing else need not stay in memory.
+  void release(std::span<const std::byte> bytes) const;
   std::string_view characters() const {
     return {reinterpret_cast<const char*>(bytes_.data()), bytes_.size()};
   }

@@ -10,6 +10,7 @@
 
 #include <charconv>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,6 +28,10 @@ void write_off(AtomicFile& file, const Mesh& mesh);
 // Lines in R^2. Errors: invalid_argument if the segments branch or a coordinate is not finite.
 Status write_svg(AtomicFile& file, const Mesh& mesh, const WriteMeshOptions& options);
 Status write_geojson(AtomicFile& file, const Mesh& mesh, const WriteMeshOptions& options);
+
+// write_mesh of a mesh that contradicts itself nowhere. `on_flush` as in AtomicFile. Throws std::bad_alloc.
+Status write_checked_mesh(const Mesh& mesh, const std::filesystem::path& path,
+                          const WriteMeshOptions& options, std::function<void()> on_flush);
 
 // The point data that write_vtu makes of the mesh itself: no attribute may have such a name.
 std::vector<std::string> names_of_point_data(const Mesh& mesh, const WriteMeshOptions& options);

@@ -96,6 +96,7 @@ class StoredFieldReader final : public FieldReader {
   // Reads only the steps asked for. They are one run of bytes if time is the last axis of the file, else one
   // run for each index along the axes after it.
   Result<Field> copied(std::int64_t begin, std::int64_t end) {
+    if (kept_ && begin == kept_step_ && end == begin + 1) return *kept_;
     FieldInfo info = info_;
     info.axes.back() = info.axes.back().cropped(begin, end);
     auto memory = allocate_to_read(std::move(info), memory_limit_, path_);
@@ -103,29 +104,34 @@ class StoredFieldReader final : public FieldReader {
     memory->field.strides = strides(end - begin);
 
     std::span<std::byte> out(memory->samples, bytes((end - begin) * inner_ * outer_));
-    const bool kept = outer_ == 1 && begin == kept_step_ && begin < end;
-    if (kept) {
-      std::copy(kept_.begin(), kept_.end(), out.begin());
-      out = out.subspan(kept_.size());
+    if (kept_ && begin == kept_step_ && begin < end) {
+      std::copy_n(kept_->samples.get(), bytes(inner_), out.data());
+      out = out.subspan(bytes(inner_));
       ++begin;
     }
+    kept_.reset();
     const std::span<std::byte> fresh = out;
     const auto run = bytes((end - begin) * inner_);
     for (std::int64_t block = 0; block < outer_ && run > 0; ++block, out = out.subspan(run))
       if (Status status = source_->read(bytes((block * steps_ + begin) * inner_), out.first(run)); !status)
         return status.error();
     if (swap_bytes_) swap_bytes_of(fresh, size_of(info_.type));
-    if (outer_ == 1 && source_->sequential()) keep_last_step(end, fresh);
+    if (outer_ == 1 && source_->sequential() && end > begin) keep_last_step(memory->field, end);
     return std::move(memory->field);
   }
 
   // Readers of two steps at a time come back for the second as the first of the next pair: without it, a
-  // compressed file would be decoded anew for every pair.
-  void keep_last_step(std::int64_t end, std::span<const std::byte> fresh) {
-    const auto step_bytes = bytes(inner_);
-    if (fresh.size() < step_bytes) return;
-    kept_.assign(fresh.end() - static_cast<std::ptrdiff_t>(step_bytes), fresh.end());
+  // compressed file would be decoded anew for every pair. A step that was read alone is shared.
+  void keep_last_step(const Field& field, std::int64_t end) {
     kept_step_ = end - 1;
+    const std::int64_t steps = field.info.axes.back().count;
+    kept_ = field.cropped(field.info.dimension() - 1, steps - 1, steps);
+    if (steps == 1) return;
+    auto copy = allocate_field(kept_->info);
+    if (!copy) return kept_.reset();
+    std::copy_n(kept_->samples.get(), bytes(inner_), copy->samples);
+    copy->field.strides = kept_->strides;
+    kept_ = std::move(copy->field);
   }
 
   std::vector<std::size_t> order_; // the file's axis for each of the field's
@@ -135,7 +141,7 @@ class StoredFieldReader final : public FieldReader {
   bool swap_bytes_;
   std::filesystem::path path_;
   std::uint64_t memory_limit_;
-  std::vector<std::byte> kept_; // the samples of kept_step_
+  std::optional<Field> kept_; // the step kept_step_
   std::int64_t kept_step_ = -1;
 };
 

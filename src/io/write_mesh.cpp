@@ -116,22 +116,31 @@ Status check(const Mesh& mesh, const WriteMeshOptions& options) {
 
 } // namespace
 
+Status write_checked_mesh(const Mesh& mesh, const std::filesystem::path& path,
+                          const WriteMeshOptions& options, std::function<void()> on_flush) {
+  const auto found = find_format(mesh.dimension, mesh.simplex_dimension, path, options);
+  if (!found) return found.error();
+  const Format& format = **found;
+  if (mesh.vertex_count() > format.largest_count || mesh.simplex_count() > format.largest_count)
+    return Error{Code::file_unsupported,
+                 text(path.string(), ": ", format.name, " counts to ", format.largest_count,
+                      ", the mesh has ", mesh.vertex_count(), " vertices and ", mesh.simplex_count(),
+                      " simplices; vtu holds any number")};
+  auto file = AtomicFile::create(path);
+  if (!file) return file.error();
+  file->set_on_flush(std::move(on_flush));
+  if (const Status written = format.write(*file, mesh, options); !written)
+    return Error{written.error().code, text(path.string(), ": ", written.error().message)};
+  file->set_on_flush({});
+  return file->commit(options.group);
+}
+
 Status write_mesh(const Mesh& mesh, const std::filesystem::path& path, const WriteMeshOptions& options) {
   try {
     const auto found = find_format(mesh.dimension, mesh.simplex_dimension, path, options);
     if (!found) return found.error();
-    const Format& format = **found;
-    if (mesh.vertex_count() > format.largest_count || mesh.simplex_count() > format.largest_count)
-      return Error{Code::file_unsupported,
-                   text(path.string(), ": ", format.name, " counts to ", format.largest_count,
-                        ", the mesh has ", mesh.vertex_count(), " vertices and ", mesh.simplex_count(),
-                        " simplices; vtu holds any number")};
     if (const auto checked = check(mesh, options); !checked) return checked;
-    auto file = AtomicFile::create(path);
-    if (!file) return file.error();
-    if (const Status written = format.write(*file, mesh, options); !written)
-      return Error{written.error().code, text(path.string(), ": ", written.error().message)};
-    return file->commit(options.group);
+    return write_checked_mesh(mesh, path, options, {});
   } catch (const std::bad_alloc&) {
     return Error{Code::out_of_memory, text("no memory to write ", path.string())};
   }
