@@ -85,7 +85,8 @@ Status read_bytes(const std::string& content, const std::string& suffix) {
   return mesh ? Status() : mesh.error();
 }
 
-const MeshKind vtk_kinds[] = {{2, 1}, {2, 2}, {3, 1}, {3, 2}, {3, 3}, {4, 1}, {4, 2}, {4, 3}, {4, 4}};
+const MeshKind vtk_kinds[] = {{2, 1}, {2, 2}, {3, 1}, {3, 2}, {3, 3}, {4, 1}, {4, 2},
+                              {4, 3}, {4, 4}, {5, 4}, {5, 5}, {6, 5}, {8, 7}};
 
 } // namespace
 
@@ -147,7 +148,7 @@ TEST(Vtk, mesh_without_vertices) {
   const TemporaryFolder folder;
   for (MeshKind kind : vtk_kinds)
     for (const char* name : {"a.vtu", "a.vtp"}) {
-      if (name == std::string("a.vtp") && (kind.dimension == 4 || kind.simplex_dimension == 3)) continue;
+      if (name == std::string("a.vtp") && (kind.dimension > 3 || kind.simplex_dimension == 3)) continue;
       kind.vertices = kind.simplices = 0;
       Mesh mesh = random_mesh(kind);
       const Mesh read = read_back(mesh, folder / name);
@@ -488,7 +489,8 @@ TEST(WriteMesh, meshes_that_a_format_cannot_hold) {
   expect({3, 3}, "a.stl", "vtu");
   expect({3, 1}, "a.stl", "vtu, vtp, obj");
   expect({3, 1}, "a.off", "vtu, vtp, obj");
-  expect({5, 2}, "a.vtu", "no format");
+  expect({9, 2}, "a.vtu", "no format");
+  expect({5, 4}, "a.ply", "4-simplices in 5 dimensions; formats that do: vtu");
   expect({3, 2}, "a.xyz", "\"xyz\"");
   expect({3, 2}, "a", "vtu, vtp, ply");
   EXPECT_TRUE(folder.names().empty());
@@ -514,7 +516,7 @@ TEST(WriteMesh, meshes_that_contradict_themselves) {
 TEST(WriteMesh, existing_file_stays_when_writing_fails) {
   const TemporaryFolder folder;
   write_content(folder / "a.vtu", "old");
-  EXPECT_FALSE(write_mesh(random_mesh({5, 4}), folder / "a.vtu"));
+  EXPECT_FALSE(write_mesh(random_mesh({9, 4}), folder / "a.vtu"));
   EXPECT_EQ(content_of(folder / "a.vtu"), "old");
   expect_error(write_mesh(random_mesh({3, 2}), folder / "missing" / "a.vtu"), Code::file_unwritable, "a.vtu");
 }

@@ -132,7 +132,7 @@ struct WriteMeshOptions {
 /// or device, such as /dev/stdout, is written as it is).
 ///
 /// | format   | simplices                          | of the mesh it keeps                                 |
-/// | vtu      | segments to 4-simplices            | all, to the bit                                      |
+/// | vtu      | segments to 7-simplices            | all, to the bit                                      |
 /// | vtp      | segments, triangles; not in R^4    | all, to the bit; but segments without attributes of  |
 /// |          |                                    | their own are joined into lines (see polylines)      |
 /// | ply      | triangles; not in R^4              | positions as they are; attributes, one property a    |
@@ -151,8 +151,9 @@ struct WriteMeshOptions {
 /// |          |                                    | inside on its left, closed ones end where they begin |
 ///
 /// Points of a mesh in R^2 get z = 0. Of a mesh in R^4 they are x, y, z; point data `t` is the fourth
-/// coordinate and `xyzt` has all four, so that a contour of `t` in ParaView is a slice in time. VTK has no
-/// cell for 4-simplices: they are poly vertices of five points, whole for `read_mesh`, points to others. vtu
+/// coordinate and `xyzt` has all four, so that a contour of `t` in ParaView is a slice in time. In higher
+/// dimensions the points are the first three coordinates, `t` the last, and `coordinates` has all. VTK has no
+/// cell for 4-simplices and larger ones: they are poly vertices, whole for `read_mesh`, points to others. vtu
 /// and vtp hold their arrays inline, base64 of zlib, the only encoding that all of Debian's VTK programs
 /// read.
 ///
@@ -202,9 +203,9 @@ class MeshFileWriter {
 /// the edges fit no grid any more, they are left out. vtu and vtp by others may be ascii, inline or appended,
 /// with or without zlib, and hold one piece with one kind of simplex; ply, stl (also text; not welded), obj
 /// and off hold triangles, or obj segments. Positions are f32 or f64 as the file has them, f64 from text.
-/// A mesh is in R^4 if it has point data `xyzt`, in R^2 if write_mesh noted so or, from vtu and vtp by
-/// others, if it holds segments with z = 0 only, else in R^3. Errors: file_not_found, file_unreadable,
-/// file_malformed, file_unsupported, out_of_memory.
+/// A mesh is in R^4 if it has point data `xyzt`, in a higher dimension or in R^2 if write_mesh noted so or,
+/// from vtu and vtp by others, if it holds segments with z = 0 only, else in R^3. Errors: file_not_found,
+/// file_unreadable, file_malformed, file_unsupported, out_of_memory.
 Result<Mesh> read_mesh(const std::filesystem::path& path);
 
 /// One step of a series of files.

@@ -189,7 +189,7 @@ class Reader {
     if (types.size() != cells.count)
       fail(xml_.malformed(text("has ", types.size(), " cell types for ", cells.count, " cells")));
     for (int K = 1; K <= vtk_names::largest_simplex; ++K) {
-      if (K == 4 && cells.simplex_dimension != 4) continue; // another program's points
+      if (K > 3 && cells.simplex_dimension != K) continue; // another program's points
       if (!types.empty() &&
           std::count(types.begin(), types.end(), vtk_names::cell_type(K)) == std::ssize(types))
         return {K, cells.count, cells.arrays};
@@ -261,10 +261,12 @@ class Reader {
   }
 
   void read_positions(Mesh& mesh, pugi::xml_node piece) {
-    const auto in_r4 = array_named(piece.child("PointData"), vtk_names::position_in_r4);
-    if (in_r4 && in_r4.attribute("NumberOfComponents").as_int() == 4) {
-      mesh.dimension = 4;
-      return read_positions_of(mesh, in_r4);
+    const std::uint64_t noted = number_named(vtk_names::space_dimension);
+    const int dimension = noted > 4 && noted <= vtk_names::largest_dimension ? static_cast<int>(noted) : 4;
+    const auto all = array_named(piece.child("PointData"), vtk_names::coordinates(dimension));
+    if (all && all.attribute("NumberOfComponents").as_int() == dimension) {
+      mesh.dimension = dimension;
+      return read_positions_of(mesh, all);
     }
     read_positions_of(mesh, piece.child("Points").child("DataArray"));
     if (status_ && is_planar(mesh)) leave_out_z(mesh);
@@ -343,11 +345,12 @@ class Reader {
   }
 
   void read_attributes(Mesh& mesh, pugi::xml_node data, Attribute::Location location, std::uint64_t tuples) {
-    bool expect_time = mesh.dimension == 4 && location == Attribute::Location::vertex;
+    bool expect_last_coordinate = mesh.dimension > 3 && location == Attribute::Location::vertex;
     for (const auto node : data.children("DataArray")) {
       const std::string name = node.attribute("Name").as_string();
       if (location == Attribute::Location::vertex &&
-          (name == vtk_names::grid_edge || (mesh.dimension == 4 && name == vtk_names::position_in_r4)))
+          (name == vtk_names::grid_edge ||
+           (mesh.dimension > 3 && name == vtk_names::coordinates(mesh.dimension))))
         continue;
       const auto array = xml_.array(node);
       if (!array) return fail(array.error());
@@ -356,8 +359,8 @@ class Reader {
                                         " times ", array->components, " are due")));
       Attribute attribute{name, location, static_cast<int>(array->components), attribute_values(*array)};
       if (!status_) return;
-      if (expect_time && is_last_coordinate(mesh, attribute))
-        expect_time = false; // `xyzt` has it
+      if (expect_last_coordinate && is_last_coordinate(mesh, attribute))
+        expect_last_coordinate = false; // the array of all coordinates has it
       else
         mesh.attributes.push_back(std::move(attribute));
     }

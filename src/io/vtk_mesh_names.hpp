@@ -7,7 +7,8 @@
 namespace hyperiso::vtk_names {
 
 // Point data.
-inline const std::string position_in_r4 = "xyzt"; // the points themselves hold x, y, z
+// All coordinates, from four on; the points themselves hold the first three.
+inline std::string coordinates(int dimension) { return dimension == 4 ? "xyzt" : "coordinates"; }
 inline const std::string grid_edge = "grid_edge"; // Mesh::edges
 
 // Field data.
@@ -24,9 +25,9 @@ inline std::string grid_coordinates(std::size_t axis) { // of the axes that have
   return "grid_coordinates_" + std::to_string(axis);
 }
 
-// VTK's number for segments, triangles and tetrahedra. It has none for 4-simplices: they are its "poly
+// VTK's number for segments, triangles and tetrahedra. It has none for larger simplices: they are its "poly
 // vertex", a cell of any number of points that are not joined.
-constexpr int largest_simplex = 4;
+constexpr int largest_simplex = 7, largest_dimension = 8;
 constexpr int cell_type(int K) { return K == 1 ? 3 : K == 2 ? 5 : K == 3 ? 10 : 2; }
 
 } // namespace hyperiso::vtk_names

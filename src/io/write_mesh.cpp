@@ -32,7 +32,7 @@ constexpr std::uint64_t any_count = UINT64_MAX;
 constexpr std::uint64_t int_count = std::numeric_limits<std::int32_t>::max();
 
 constexpr Format formats[] = {
-    {"vtu", "segments to 4-simplices in up to 4 dimensions", {1, 4}, 4, any_count, write_any<write_vtu>},
+    {"vtu", "segments to 7-simplices in up to 8 dimensions", {1, 7}, 8, any_count, write_any<write_vtu>},
     {"vtp", "segments and triangles in 2 or 3 dimensions", {1, 2}, 3, any_count, write_any<write_vtp>},
     {"obj", "segments and triangles in 2 or 3 dimensions", {1, 2}, 3, any_count, write_any<write_obj>},
     {"off", "triangles in 2 or 3 dimensions", {2, 2}, 3, any_count, write_any<write_off>},
@@ -49,8 +49,9 @@ std::string format_name(const std::filesystem::path& path, const WriteMeshOption
 }
 
 const char* name_of_simplices(int dimension) {
-  constexpr const char* names[] = {"points", "segments", "triangles", "tetrahedra", "4-simplices"};
-  return dimension >= 0 && dimension <= 4 ? names[dimension] : "simplices";
+  constexpr const char* names[] = {"points",      "segments",    "triangles",   "tetrahedra",
+                                   "4-simplices", "5-simplices", "6-simplices", "7-simplices"};
+  return dimension >= 0 && dimension <= 7 ? names[dimension] : "simplices";
 }
 
 bool fits(const Format& format, int dimension, int simplex_dimension) {

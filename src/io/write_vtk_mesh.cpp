@@ -102,15 +102,17 @@ void write_attributes(AtomicFile& file, const Mesh& mesh, Attribute::Location lo
   }
 }
 
-void write_point_data(AtomicFile& file, const Mesh& mesh, const std::string& time_name, bool keep_edges) {
-  const bool in_r4 = mesh.dimension == 4;
-  file.write(in_r4 ? text("<PointData Scalars=\"", xml_escaped(time_name), "\">\n") : "<PointData>\n");
-  if (in_r4)
+void write_point_data(AtomicFile& file, const Mesh& mesh, const std::string& last_axis, bool keep_edges) {
+  const bool beyond_points = mesh.dimension > 3;
+  const auto D = static_cast<std::uint64_t>(mesh.dimension);
+  file.write(beyond_points ? text("<PointData Scalars=\"", xml_escaped(last_axis), "\">\n")
+                           : "<PointData>\n");
+  if (beyond_points)
     mesh.positions.visit([&]<class Real>(std::span<Real> positions) {
       using T = std::remove_const_t<Real>;
-      write_array<T>(file, time_name, mesh.vertex_count(), 1,
-                     [&](std::uint64_t i) { return positions[4 * i + 3]; });
-      write_array<T>(file, vtk_names::position_in_r4, mesh.vertex_count(), 4,
+      write_array<T>(file, last_axis, mesh.vertex_count(), 1,
+                     [&](std::uint64_t i) { return positions[D * i + D - 1]; });
+      write_array<T>(file, vtk_names::coordinates(mesh.dimension), mesh.vertex_count(), mesh.dimension,
                      [&](std::uint64_t i) { return positions[i]; });
     });
   if (keep_edges)
@@ -132,9 +134,10 @@ void write_points(AtomicFile& file, const Mesh& mesh) {
   file.write("</Points>\n");
 }
 
-std::string time_name(const WriteMeshOptions& options) {
-  const bool named = options.axis_names.size() == 4 && !options.axis_names[3].empty();
-  return named ? options.axis_names[3] : "t";
+std::string name_of_last_axis(const Mesh& mesh, const WriteMeshOptions& options) {
+  const bool named = options.axis_names.size() == static_cast<std::size_t>(mesh.dimension) &&
+                     !options.axis_names.back().empty();
+  return named ? options.axis_names.back() : "t";
 }
 
 template <class T>
@@ -172,7 +175,7 @@ void write_vtk(AtomicFile& file, const Mesh& mesh, const WriteMeshOptions& optio
            type, ">\n"));
   write_field_data(file, mesh, keep_edges);
   file.write(text("<Piece NumberOfPoints=\"", mesh.vertex_count(), "\" ", piece_counts, ">\n"));
-  write_point_data(file, mesh, time_name(options), keep_edges);
+  write_point_data(file, mesh, name_of_last_axis(mesh, options), keep_edges);
   write_points(file, mesh);
   write_all_cells();
   file.write(text("</Piece>\n</", type, ">\n</VTKFile>\n"));
@@ -182,7 +185,7 @@ void write_vtk(AtomicFile& file, const Mesh& mesh, const WriteMeshOptions& optio
 
 std::vector<std::string> names_of_point_data(const Mesh& mesh, const WriteMeshOptions& options) {
   if (mesh.dimension < 4) return {vtk_names::grid_edge};
-  return {vtk_names::grid_edge, vtk_names::position_in_r4, time_name(options)};
+  return {vtk_names::grid_edge, vtk_names::coordinates(mesh.dimension), name_of_last_axis(mesh, options)};
 }
 
 void write_vtu(AtomicFile& file, const Mesh& mesh, const WriteMeshOptions& options) {
