@@ -25,6 +25,7 @@ from pathlib import Path
 PROGRAM = Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else Path("build/release/bin/hyperiso").resolve()
 ROOT = Path(__file__).resolve().parent.parent
 WATER = "examples/data/alpha_water_24x24x24x41.nrrd"
+FOLDING = "examples/data/folding_cell_2x2x2x2x2.nrrd"  # a surface that passes through itself
 VERBS = ["info", "extract", "interval", "slice", "animate", "morph", "track", "measure", "table", "sample", "convert"]
 
 HAS_VIEW = b"\n  view " in subprocess.run([PROGRAM, "--help"], capture_output=True, check=True).stdout
@@ -145,6 +146,9 @@ class Json(Case):
         self.assertEqual(self.ok("extract", *run).json()["self_intersections"], {"pairs": 0, "examples": []})
         found = self.ok("measure", "ball.ply", "--self-intersections", "--json").json()
         self.assertEqual(found["self_intersections"], {"pairs": 0, "examples": []})
+        self.ok("extract", FOLDING, "--iso", "0", "-o", "folding.vtu")
+        found = self.ok("measure", "folding.vtu", "--self-intersections", "--json").json()
+        self.assertEqual(found["self_intersections"]["pairs"], 51)
 
     def test_several_isovalues_are_surfaces(self):
         path = self.sample()
@@ -855,7 +859,7 @@ class SlabBySlab(Case):
 
     def test_part_of_a_field(self):
         self.assert_same(self.field, "--iso", "0.5", "--crop", "3:,,:38", "--steps", "1:19")
-        self.assert_same(self.field, "--iso", "0.5", "--crop", ",20:21", suffix=".vtu", memory=("--memory", "1M"))
+        self.assert_same(self.field, "--iso", "0.5", "--crop", ",20:21")
 
     def test_a_volume_goes_along_its_last_axis(self):
         self.ok("sample", "gyroid", "--dims", "64,64,300", "-o", "volume.nrrd")
@@ -901,7 +905,10 @@ class SlabBySlab(Case):
         self.assert_refused(2, "extract", "packed.nrrd", "--iso", "0.5", "-o", "out.vtu", *self.SMALL, words=["packed.nrrd"])
 
     def test_no_room_for_two_steps(self):
-        self.assert_refused(1, "extract", self.field, "--iso", "0.5", "--memory", "900K", words=["two steps", "--memory"])
+        # What the program itself holds differs from system to system; it says so where that is too much.
+        held = re.search(r"holds ([0-9.]+) MiB", Run("extract", self.field, "--iso", "0.5", "--memory", "1K").err)
+        limit = f"{int(float(held[1]) * 1024) + 250}K"
+        self.assert_refused(1, "extract", self.field, "--iso", "0.5", "--memory", limit, words=["two steps", "--memory"])
 
     def test_empty_surface_is_warned_about(self):
         run = Run("extract", self.field, "--iso", "7", *self.SMALL)

@@ -105,8 +105,7 @@ Command interval_command(CLI::App& program) {
         "Every vertex has point data: level, the number of its level, and isovalue; ParaView's Contour of "
         "isovalue slides through the range.",
         "No program draws 4-simplices: as .vtu they are cells of five unconnected points, x, y, z with the "
-        "fourth "
-        "coordinate as point data t, as 4D surfaces are; ParaView shows them as points.",
+        "fourth coordinate as point data t, as 4D surfaces are; ParaView shows them as points.",
         "With --method hull a few simplices may fold over: project with the wrong sign. They are counted as "
         "inverted; on smooth fields there are hardly any. Where simplices are integrated over "
         "and "

@@ -426,7 +426,8 @@ Command view_command(CLI::App& program) {
         {"with what merges and parts on the time line",
          "hyperiso view examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 --track -o tracked.html"},
         {"how the surface depends on the isovalue, from 0.3 to 0.7",
-         "hyperiso interval volume.nrrd --range 0.3:0.7 -o shell.vtu && hyperiso view shell.vtu -o "
+         "hyperiso interval examples/data/alpha_water_24x24x24x41.nrrd --steps 20:21 --range 0.3:0.7 -o "
+         "shell.vtu && hyperiso view shell.vtu -o "
          "shell.html"},
         {"with a slider for the isovalue", "hyperiso view examples/data/alpha_water_24x24x24x41.nrrd --iso "
                                            "0.5 --payload field -o levels.html"}}});

@@ -1,5 +1,6 @@
 #pragma once
-// Instead of src/core/text.hpp: the page words what went wrong itself, and streams would be most of the module.
+// Instead of src/core/text.hpp: the page words what went wrong itself, and streams would be most of the
+// module.
 
 #include <string>
 
