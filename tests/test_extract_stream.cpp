@@ -416,8 +416,8 @@ TEST(Stream, what_cannot_be_streamed_is_told) {
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
-// Measured by the system: two steps, one slab's mesh and a tenth; and what the table, the threads and the
-// rounding to large pages take, which is no share of the field: 268 MB here.
+// Measured by the system: two steps, one slab's mesh and a tenth; and what the threads take and the rounding
+// to large pages, which is no share of the field: 268 MB here.
 TEST(Stream, peak_memory_is_that_of_two_steps_and_a_slab) {
   MovingBalls warm_up(16, 4), source(128, 32);
   ASSERT_TRUE(stream(warm_up, 10, [](SurfaceSlab&) { return Status{}; })); // makes the table
@@ -432,7 +432,7 @@ TEST(Stream, peak_memory_is_that_of_two_steps_and_a_slab) {
   }));
   ASSERT_GT(simplices, 1'000'000u);
   const std::uint64_t step = 128 * 128 * 128 * sizeof(float);
-  EXPECT_LT(memory_figure("VmHWM:") - before, (2 * step + largest) * 11 / 10 + (24u << 20))
+  EXPECT_LT(memory_figure("VmHWM:") - before, (2 * step + largest) * 11 / 10 + (12u << 20))
       << "a slab takes " << largest;
 }
 

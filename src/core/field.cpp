@@ -1,6 +1,7 @@
 #include "hyperiso/field.hpp"
 
 #include "core/text.hpp"
+#include "hyperiso/number_array.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -73,13 +74,14 @@ Result<NewField> allocate_field(FieldInfo info, std::uint64_t memory_limit) {
   if (bytes > memory_limit)
     return Error{Code::out_of_memory, text("the field takes ", byte_size(bytes), ", the memory limit is ",
                                            byte_size(memory_limit))};
-  auto* samples = static_cast<std::byte*>(
-      ::operator new (std::max<std::uint64_t>(bytes, 1), std::align_val_t{64}, std::nothrow));
-  if (!samples) return Error{Code::out_of_memory, text("no memory for a field of ", byte_size(bytes))};
-  std::shared_ptr<const std::byte> owner(samples, [](const std::byte* p) {
-    ::operator delete (const_cast<std::byte*>(p), std::align_val_t{64});
-  });
-  return NewField{Field{std::move(info), std::move(owner), std::move(strides)}, samples};
+  try {
+    const auto memory = std::make_shared<Buffer>();
+    memory->reset(std::max<std::uint64_t>(bytes, 1));
+    auto* samples = static_cast<std::byte*>(memory->data());
+    return NewField{Field{std::move(info), {memory, samples}, std::move(strides)}, samples};
+  } catch (const std::bad_alloc&) {
+    return Error{Code::out_of_memory, text("no memory for a field of ", byte_size(bytes))};
+  }
 }
 
 } // namespace hyperiso
