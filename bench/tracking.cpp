@@ -1,6 +1,6 @@
 #include "tracking.hpp"
 
-#include "clock.hpp"
+#include "jobs.hpp"
 
 #include "core/parallel.hpp"
 #include "hyperiso/io.hpp"
@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <benchmark/benchmark.h>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -41,17 +40,6 @@ Field make_field(const TrackingWorkload& workload, double& isovalue) {
   return require(make_sample(workload.sample, options), workload.title);
 }
 
-template <class Work>
-double fastest_seconds(Work&& work) {
-  double fastest = HUGE_VAL;
-  for (int repetition = 0; repetition < repetitions; ++repetition) {
-    const Clock clock;
-    work();
-    fastest = std::min(fastest, clock.seconds());
-  }
-  return fastest;
-}
-
 // A cell at the middle step that the surface passes.
 std::vector<std::int64_t> seed_cell(const Field& field, double isovalue) {
   const auto view = field.view<float, 4>();
@@ -77,20 +65,26 @@ void run(benchmark::State& state, const TrackingWorkload& workload, int threads)
   };
   double extracting = 0, tracking = 0;
   for (auto _ : state) {
-    extracting = fastest_seconds([&] {
-      simplices = 0;
-      if (const Status streamed = stream(steps, isovalue, count, options.extraction); !streamed)
-        std::fprintf(stderr, "%s: %s\n", workload.title.c_str(), streamed.error().message.c_str()),
-            std::exit(1);
-    });
+    extracting = fastest_seconds(
+        [&] {
+          simplices = 0;
+          if (const Status streamed = stream(steps, isovalue, count, options.extraction); !streamed)
+            std::fprintf(stderr, "%s: %s\n", workload.title.c_str(), streamed.error().message.c_str()),
+                std::exit(1);
+        },
+        repetitions);
     if (workload.local) {
       const auto cell = seed_cell(field, isovalue);
-      tracking = fastest_seconds([&] {
-        benchmark::DoNotOptimize(require(track_from_seeds(steps, isovalue, {cell}, options), workload.title));
-      });
+      tracking = fastest_seconds(
+          [&] {
+            benchmark::DoNotOptimize(
+                require(track_from_seeds(steps, isovalue, {cell}, options), workload.title));
+          },
+          repetitions);
     } else {
       tracking = fastest_seconds(
-          [&] { benchmark::DoNotOptimize(require(track(steps, isovalue, options), workload.title)); });
+          [&] { benchmark::DoNotOptimize(require(track(steps, isovalue, options), workload.title)); },
+          repetitions);
     }
     state.SetIterationTime(tracking);
   }

@@ -3,7 +3,7 @@
 
 #include "core/determinant.hpp"
 #include "hyperiso/track.hpp"
-#include "track/level.hpp"
+#include "track/feature_rows.hpp"
 #include "track/region_slab.hpp"
 #include "track/regions.hpp"
 
@@ -31,20 +31,21 @@ class RegionFeatures {
   std::vector<Feature> measure(std::shared_ptr<const SimplexMesh<D + 1>> mesh, const StepPieces& pieces,
                                const Level<D + 2>& level) {
     mesh_ = std::move(mesh);
-    add_rows(level);
+    rows_ = FeatureRows<D>(level);
+    sums_.resize(rows_.count());
     place_vertices(pieces, level);
     find_pieces(pieces);
     for (std::size_t simplex = 0; simplex < simplex_count(); ++simplex) add_simplex(simplex);
     add_faces();
     finish();
-    return std::move(features_);
+    return std::move(rows_.features);
   }
 
   const std::vector<RegionPiece>& pieces() const { return pieces_; }
 
-  std::size_t row_count() const { return last_cell_.size(); }
+  std::size_t row_count() const { return rows_.count(); }
   // The row of each component of the level, or SIZE_MAX.
-  std::size_t row_of(std::size_t component) const { return row_of_component_[component]; }
+  std::size_t row_of(std::size_t component) const { return rows_.row_of(component); }
 
   // The row of what crosses the first level between two samples, or none.
   std::uint32_t row_between(const std::array<std::int64_t, D>& a,
@@ -88,24 +89,6 @@ class RegionFeatures {
     return corners;
   }
 
-  void add_rows(const Level<D + 2>& level) {
-    for (const auto& outcome : level.outcomes()) {
-      const bool is_row = outcome.arc >= 0 || outcome.event >= 0;
-      row_of_component_.push_back(is_row ? features_.size() : SIZE_MAX);
-      if (!is_row) continue;
-      Feature& feature = features_.emplace_back();
-      feature.arc = outcome.arc;
-      feature.event = outcome.event;
-      feature.low.assign(D, std::numeric_limits<double>::infinity());
-      feature.high.assign(D, -std::numeric_limits<double>::infinity());
-      feature.centroid.assign(D, 0.0);
-      feature.minimum = std::numeric_limits<double>::infinity();
-      feature.maximum = -std::numeric_limits<double>::infinity();
-    }
-    sums_.resize(features_.size());
-    last_cell_.resize(features_.size(), -1);
-  }
-
   void place_vertices(const StepPieces& pieces, const Level<D + 2>& level) {
     row_of_sample_.assign(static_cast<std::size_t>(step_.grid.samples()), none);
     vertex_row_.assign(mesh_->edges.size(), SIZE_MAX);
@@ -117,7 +100,7 @@ class RegionFeatures {
       const auto component = level.component_of(pieces, vertex);
       if (!component || row_of(*component) == SIZE_MAX) continue;
       vertex_row_[vertex] = row_of(*component);
-      add_vertex(placed_[vertex], features_[vertex_row_[vertex]]);
+      add_vertex(placed_[vertex], rows_.features[vertex_row_[vertex]]);
       if (vertices_.is_sample(edge)) add_sample(location.lower, vertex_row_[vertex]);
     }
   }
@@ -150,7 +133,7 @@ class RegionFeatures {
     std::int64_t number = 0;
     for (int axis = D - 1; axis >= 0; --axis) number = number * step_.grid.axes[axis].count + sample[axis];
     row_of_sample_[static_cast<std::size_t>(number)] = static_cast<std::uint32_t>(row);
-    features_[row].cell_volume += share_of(sample);
+    rows_.features[row].cell_volume += share_of(sample);
   }
 
   void find_pieces(const StepPieces& pieces) {
@@ -189,20 +172,8 @@ class RegionFeatures {
     sum.volume += volume;
     sum.mass += volume * value;
     for (std::size_t axis = 0; axis < D; ++axis) sum.moment[axis] += volume * part.moment[axis];
-    count_cell(row, vertices);
+    rows_.count_cell(row, placed_, vertices, step_.grid);
   }
-  // Simplices come cell by cell.
-  void count_cell(std::size_t row, const std::array<std::uint32_t, D + 1>& vertices) {
-    std::int64_t cell = 0;
-    for (int axis = D - 1; axis >= 0; --axis) {
-      std::int32_t lowest = placed_[vertices[0]].lower[axis];
-      for (const std::uint32_t corner : vertices) lowest = std::min(lowest, placed_[corner].lower[axis]);
-      cell = cell * step_.grid.axes[axis].count + lowest;
-    }
-    if (last_cell_[row] != cell) ++features_[row].cells;
-    last_cell_[row] = cell;
-  }
-
   // The Euler characteristic counts each face once; those of one simplex only are its surface, or on walls.
   void add_faces() {
     std::vector<std::array<std::uint32_t, 2>> edges;
@@ -211,7 +182,7 @@ class RegionFeatures {
       auto vertices = corners(simplex);
       const std::size_t row = row_at(vertices);
       if (row == SIZE_MAX) continue;
-      features_[row].euler_characteristic += D == 3 ? -1 : 1;
+      rows_.features[row].euler_characteristic += D == 3 ? -1 : 1;
       std::ranges::sort(vertices);
       for (std::size_t i = 0; i <= D; ++i)
         for (std::size_t j = i + 1; j <= D && D == 3; ++j) edges.push_back({vertices[i], vertices[j]});
@@ -222,12 +193,12 @@ class RegionFeatures {
     }
     std::ranges::sort(edges);
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    for (const auto& edge : edges) --features_[row_at(edge)].euler_characteristic;
+    for (const auto& edge : edges) --rows_.features[row_at(edge)].euler_characteristic;
     std::ranges::sort(facets);
     for (std::size_t i = 0; i < facets.size();) {
       std::size_t end = i + 1;
       while (end < facets.size() && facets[end] == facets[i]) ++end;
-      Feature& feature = features_[row_at(facets[i])];
+      Feature& feature = rows_.features[row_at(facets[i])];
       feature.euler_characteristic += D == 3 ? 1 : -1;
       if (end - i == 1 && !is_on_wall(facets[i])) feature.surface_area += size_of(facets[i]);
       i = end;
@@ -256,8 +227,8 @@ class RegionFeatures {
   }
 
   void finish() {
-    for (std::size_t row = 0; row < features_.size(); ++row) {
-      Feature& feature = features_[row];
+    for (std::size_t row = 0; row < rows_.features.size(); ++row) {
+      Feature& feature = rows_.features[row];
       const Sum& sum = sums_[row];
       const double sign = sum.volume < 0 ? -1 : 1;
       feature.volume = sign * sum.volume;
@@ -274,13 +245,11 @@ class RegionFeatures {
   bool one_orientation_; // of the mesh
   std::shared_ptr<const SimplexMesh<D + 1>> mesh_;
   std::array<std::vector<double>, D> share_;
-  std::vector<Feature> features_;
-  std::vector<std::size_t> row_of_component_;
+  FeatureRows<D> rows_;
   std::vector<std::uint32_t> row_of_sample_;
   std::vector<PlacedVertex> placed_;
   std::vector<std::size_t> vertex_row_; // or SIZE_MAX
   std::vector<Sum> sums_;               // of each row
-  std::vector<std::int64_t> last_cell_; // of each row
   std::vector<RegionPiece> pieces_;
 };
 

@@ -141,7 +141,6 @@ class KuhnRegion {
     std::ranges::sort(vertices);
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     mesh.edges.assign(vertices.begin(), vertices.end());
-    mesh.positions.reset(vertices.size() * (D + 1), false); // that nobody reads
     mesh.simplices.reset(edges_.size(), true);
     for (std::size_t corner = 0; corner < edges_.size(); ++corner)
       mesh.simplices.set(corner, static_cast<std::uint64_t>(

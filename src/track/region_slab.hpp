@@ -85,29 +85,16 @@ Result<Slab<D + 1>> make_region_slab(const RegionSlabSamples<T, D>& samples, con
 
   Array<GridEdge> edges;
   edges.reset(order.size());
-  std::vector<double> times(order.size());
   std::vector<Vertex> number(order.size());
-  bool ties_below = false, ties_above = false;
   for (Vertex vertex = 0; vertex < order.size(); ++vertex) {
-    const GridEdge edge = edges[vertex] = order[vertex].first;
+    edges[vertex] = order[vertex].first;
     number[order[vertex].second] = vertex;
-    if (!(edge / samples.row_length() >> D & 1)) {
-      times[vertex] = edge < samples.step_offset() ? 0 : 1;
-    } else {
-      times[vertex] = samples.time(edge);
-      ties_below |= times[vertex] == 0;
-      ties_above |= times[vertex] == 1;
-    }
   }
   std::vector<Vertex> corners(mesh.simplices.size());
   for (std::size_t corner = 0; corner < corners.size(); ++corner)
     corners[corner] = number[mesh.simplices[corner]];
-  Slab<D + 1> slab(std::move(edges), std::move(times), std::move(corners));
+  Slab<D + 1> slab = slab_of<D + 1>(std::move(edges), std::move(corners), samples, has_missing);
   slab.region = true;
-  slab.ties_below = ties_below;
-  slab.ties_above = ties_above;
-  slab.has_missing = has_missing;
-  describe(slab, samples);
   return slab;
 }
 

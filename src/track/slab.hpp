@@ -240,33 +240,40 @@ void describe(Slab<C>& slab, const Samples& samples) {
   slab.place_of_upper_end = [samples](GridEdge edge) { return samples.place_of_upper_end(edge); };
 }
 
-// Takes over a surface between two steps. Requires its edges.
-template <class T, int D>
-Result<Slab<D>> make_slab(const SlabSamples<T, D>& samples, SimplexMesh<D>&& mesh, bool has_missing) {
-  if (mesh.vertex_count() > UINT32_MAX || mesh.simplices.size() > UINT32_MAX)
-    return Error{Code::out_of_memory, "the surface between two steps has more than 2^32 corners"};
-  std::vector<double> times(mesh.edges.size());
+// A slab of the given vertices, ascending, and simplices. An edge that runs from step to step is crossed at a
+// time of its own, any other at its step.
+template <int C, class Samples>
+Slab<C> slab_of(Array<GridEdge>&& edges, std::vector<Vertex>&& corners, const Samples& samples,
+                bool has_missing) {
+  std::vector<double> times(edges.size());
   bool ties_below = false, ties_above = false;
-  const GridEdge upper_step = samples.step_offset();
   for (Vertex vertex = 0; vertex < times.size(); ++vertex) {
-    const GridEdge edge = mesh.edges[vertex];
-    if (!(edge / samples.row_length() >> (D - 1) & 1)) {
-      times[vertex] = edge < upper_step ? 0 : 1;
+    const GridEdge edge = edges[vertex];
+    if (!(edge / samples.row_length() >> (C - 1) & 1)) {
+      times[vertex] = edge < samples.step_offset() ? 0 : 1;
     } else {
       times[vertex] = samples.time(edge);
       ties_below |= times[vertex] == 0;
       ties_above |= times[vertex] == 1;
     }
   }
-  std::vector<Vertex> corners(mesh.simplices.size());
-  for (std::size_t corner = 0; corner < corners.size(); ++corner)
-    corners[corner] = static_cast<Vertex>(mesh.simplices[corner]);
-  Slab<D> slab(std::move(mesh.edges), std::move(times), std::move(corners));
+  Slab<C> slab(std::move(edges), std::move(times), std::move(corners));
   slab.ties_below = ties_below;
   slab.ties_above = ties_above;
   slab.has_missing = has_missing;
   describe(slab, samples);
   return slab;
+}
+
+// Takes over a surface between two steps. Requires its edges.
+template <class T, int D>
+Result<Slab<D>> make_slab(const SlabSamples<T, D>& samples, SimplexMesh<D>&& mesh, bool has_missing) {
+  if (mesh.vertex_count() > UINT32_MAX || mesh.simplices.size() > UINT32_MAX)
+    return Error{Code::out_of_memory, "the surface between two steps has more than 2^32 corners"};
+  std::vector<Vertex> corners(mesh.simplices.size());
+  for (std::size_t corner = 0; corner < corners.size(); ++corner)
+    corners[corner] = static_cast<Vertex>(mesh.simplices[corner]);
+  return slab_of<D>(std::move(mesh.edges), std::move(corners), samples, has_missing);
 }
 
 } // namespace hyperiso::track_detail

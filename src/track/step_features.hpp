@@ -2,7 +2,7 @@
 // The components of the surface at one step, measured.
 
 #include "hyperiso/track.hpp"
-#include "track/level.hpp"
+#include "track/feature_rows.hpp"
 #include "track/regions.hpp"
 #include "track/step_pieces.hpp"
 
@@ -29,7 +29,7 @@ class StepFeatures {
   // `step`: the samples. `level` knows M there and what became of its components.
   StepFeatures(const FieldView<const T, D>& step, const StepMask& mask, const SlabSamples<T, D + 1>& samples,
                bool upper_step, Method method, const Level<D + 1>& level)
-      : step_(step), samples_(samples), upper_step_(upper_step), regions_(step, mask, method) {
+      : step_(step), samples_(samples), upper_step_(upper_step), regions_(step, mask, method), rows_(level) {
     for (int axis = 0; axis < D; ++axis) {
       const Axis& a = step.grid.axes[axis];
       share_[axis] = shares(a);
@@ -37,7 +37,9 @@ class StepFeatures {
       length_[axis] = std::abs(a.coordinate(a.count - 1) - a.coordinate(0));
       far_wall_[axis] = (a.increasing() ? 2u : 1u) << (2 * axis);
     }
-    add_rows(level);
+    row_regions_.resize(rows_.count());
+    wanted_.resize(regions_.count());
+    counts_.resize(rows_.count());
   }
 
   const Regions<D>& regions() const { return regions_; }
@@ -53,13 +55,13 @@ class StepFeatures {
     add_simplices(surface);
     finish_pieces();
     add_samples();
-    return std::move(features_);
+    return std::move(rows_.features);
   }
 
   const std::vector<SurfacePiece>& pieces() const { return pieces_; }
 
   // The row of each component of the level, or SIZE_MAX.
-  std::size_t row_of(std::size_t component) const { return row_of_component_[component]; }
+  std::size_t row_of(std::size_t component) const { return rows_.row_of(component); }
 
  private:
   struct Counts {
@@ -70,26 +72,6 @@ class StepFeatures {
     std::uint8_t walls = 0; // bit 2k: within the first layer of axis k; bit 2k + 1: within the last one
     std::uint8_t direction = 0;
   };
-
-  void add_rows(const Level<D + 1>& level) {
-    for (const auto& outcome : level.outcomes()) {
-      const bool is_row = outcome.arc >= 0 || outcome.event >= 0;
-      row_of_component_.push_back(is_row ? features_.size() : SIZE_MAX);
-      if (!is_row) continue;
-      Feature& feature = features_.emplace_back();
-      feature.arc = outcome.arc;
-      feature.event = outcome.event;
-      feature.low.assign(D, std::numeric_limits<double>::infinity());
-      feature.high.assign(D, -std::numeric_limits<double>::infinity());
-      feature.centroid.assign(D, 0.0);
-      feature.minimum = std::numeric_limits<double>::infinity();
-      feature.maximum = -std::numeric_limits<double>::infinity();
-    }
-    row_regions_.resize(features_.size());
-    wanted_.resize(regions_.count());
-    last_cell_.resize(features_.size(), -1);
-    counts_.resize(features_.size());
-  }
 
   void place_vertices(const SimplexMesh<D>& surface, const StepPieces& pieces, const Level<D + 1>& level) {
     const auto dims = step_.dims();
@@ -109,7 +91,7 @@ class StepFeatures {
       const auto component = level.component_of(pieces, vertex);
       if (!component || row_of(*component) == SIZE_MAX) continue;
       vertex_row_[vertex] = row_of(*component);
-      Feature& feature = features_[vertex_row_[vertex]];
+      Feature& feature = rows_.features[vertex_row_[vertex]];
       ++counts_[vertex_row_[vertex]].vertices;
       for (std::size_t axis = 0; axis < D; ++axis) {
         const double coordinate = surface.positions[vertex * D + axis];
@@ -187,14 +169,14 @@ class StepFeatures {
         add_boundary_edge(all_edges[i][0], all_edges[i][1]);
     for (std::size_t vertex = 0; vertex < vertices_.size(); ++vertex) {
       if (vertex_row_[vertex] != SIZE_MAX && on_rim[vertex] && rims.find(vertex) == vertex)
-        ++features_[vertex_row_[vertex]].wall_curves;
+        ++rows_.features[vertex_row_[vertex]].wall_curves;
       if (D == 2 && segments_at[vertex] == 1) pieces_[piece_[vertex]].closed = false;
     }
     // Each edge of a triangle is in two of them, or on the boundary.
-    for (std::size_t row = 0; row < features_.size(); ++row) {
+    for (std::size_t row = 0; row < rows_.features.size(); ++row) {
       const Counts& count = counts_[row];
       const std::int64_t edges = D == 3 ? (3 * count.simplices + count.boundary_edges) / 2 : count.simplices;
-      features_[row].euler_characteristic = count.vertices - edges + (D == 3 ? count.simplices : 0);
+      rows_.features[row].euler_characteristic = count.vertices - edges + (D == 3 ? count.simplices : 0);
     }
     add_wall_points(surface);
   }
@@ -227,21 +209,9 @@ class StepFeatures {
     }
     if (vertex_row_[corners[0]] == SIZE_MAX) return;
     const std::size_t row = vertex_row_[corners[0]];
-    features_[row].surface_area += area;
+    rows_.features[row].surface_area += area;
     ++counts_[row].simplices;
-    count_cell(row, corners);
-  }
-
-  // Simplices come cell by cell.
-  void count_cell(std::size_t row, const std::array<std::uint64_t, D>& corners) {
-    std::int64_t cell = 0;
-    for (int axis = D - 1; axis >= 0; --axis) {
-      std::int32_t lowest = vertices_[corners[0]].lower[axis];
-      for (const std::uint64_t corner : corners) lowest = std::min(lowest, vertices_[corner].lower[axis]);
-      cell = cell * step_.grid.axes[axis].count + lowest;
-    }
-    if (last_cell_[row] != cell) ++features_[row].cells;
-    last_cell_[row] = cell;
+    rows_.count_cell(row, vertices_, corners, step_.grid);
   }
 
   // Crossings of the domain's edge along the last axis where all other coordinates are largest: what is left
@@ -278,11 +248,11 @@ class StepFeatures {
       row_regions_[piece.row].push_back(piece.enclosed());
       wanted_[piece.enclosed()] = true;
     }
-    for (std::size_t row = 0; row < features_.size(); ++row) {
+    for (std::size_t row = 0; row < rows_.features.size(); ++row) {
       auto& regions = row_regions_[row];
       std::ranges::sort(regions);
       regions.erase(std::unique(regions.begin(), regions.end()), regions.end());
-      for (const Region region : regions) features_[row].volume += volume[region];
+      for (const Region region : regions) rows_.features[row].volume += volume[region];
     }
   }
 
@@ -302,8 +272,8 @@ class StepFeatures {
         if (wanted_[run.region]) add_run(run, index, row_share, sums[run.region]);
       for (int axis = 1; axis < D && ++index[axis] == step_.grid.axes[axis].count; ++axis) index[axis] = 0;
     }
-    for (std::size_t row = 0; row < features_.size(); ++row) {
-      Feature& feature = features_[row];
+    for (std::size_t row = 0; row < rows_.features.size(); ++row) {
+      Feature& feature = rows_.features[row];
       for (const Region region : row_regions_[row]) {
         const RegionSum& sum = sums[region];
         feature.cell_volume += sum.size;
@@ -341,12 +311,10 @@ class StepFeatures {
   std::array<std::vector<double>, D> share_;
   std::array<double, D> low_end_, length_; // of the domain
   std::array<unsigned, D> far_wall_; // bit of PlacedVertex::walls: where the axis' coordinate is largest
-  std::vector<Feature> features_;
-  std::vector<std::size_t> row_of_component_;
+  FeatureRows<D> rows_;
   std::vector<std::vector<Region>> row_regions_;
-  std::vector<bool> wanted_;            // regions
-  std::vector<std::int64_t> last_cell_; // of each row
-  std::vector<Counts> counts_;          // of each row
+  std::vector<bool> wanted_;   // regions
+  std::vector<Counts> counts_; // of each row
   std::vector<PlacedVertex> vertices_;
   std::vector<std::size_t> vertex_row_; // or SIZE_MAX
   std::vector<std::size_t> piece_;      // of each vertex
