@@ -29,20 +29,21 @@ inline TrackingGraph track_field(const Field& field, double isovalue, const Trac
 
 // Axes of space from -half to half and steps 0 ... steps-1, all with spacing 1.
 template <int D>
-Grid<D> space_time_grid(int half, int steps) {
+Grid<D> space_time_grid(int half, int steps, int first_step = 0) {
   Grid<D> grid;
   for (Axis& axis : grid.axes) {
     axis.count = 2 * half + 1;
     axis.origin = -half;
   }
   grid.axes[D - 1].count = steps;
-  grid.axes[D - 1].origin = 0;
+  grid.axes[D - 1].origin = first_step;
   return grid;
 }
 
 struct Moment {
   EventType type;
   double time;
+  std::optional<std::int64_t> delta_euler = {};
 };
 
 // The events in order of time without those at the first and last step, times to 1e-5.
@@ -54,6 +55,9 @@ inline void expect_history(const TrackingGraph& graph, const std::vector<Moment>
   for (std::size_t i = 0; i < std::min(events.size(), expected.size()); ++i) {
     EXPECT_STREQ(name_of(events[i]->type), name_of(expected[i].type)) << "event " << i;
     EXPECT_NEAR(events[i]->time, expected[i].time, 1e-5) << "event " << i;
+    if (expected[i].delta_euler) {
+      EXPECT_EQ(events[i]->delta_euler, *expected[i].delta_euler) << "event " << i;
+    }
   }
 }
 
