@@ -112,6 +112,14 @@ class Animate(Case):
             for key in ["simplices", "vertices", "euler_characteristic", "closed", "bad_facets"]:
                 self.assertEqual(field.get(key), mesh.get(key), key)
 
+    def test_frames_are_the_stored_steps_if_nothing_else_is_said(self):
+        self.torus()
+        self.ok("extract", "torus.nrrd", "--iso", "0.5", "-o", "torus.vtu")
+        for source in (["torus.nrrd", "--iso", "0.5"], ["torus.vtu"]):
+            self.ok("animate", *source, "-o", "m.pvd")
+            self.assertEqual([float(time) for time in re.findall(r'timestep="([^"]*)"', (self.folder / "m.pvd").read_text())],
+                             [step / 4 for step in range(9)])
+
     def test_frames_at_events_are_at_their_times(self):
         self.sample("gaussians", "12,12,12,5", "blobs.nrrd")
         plain = self.ok("animate", "blobs.nrrd", "--iso", "0.5", "--frames", "3", "-o", "a.pvd", "--json").json()
@@ -221,8 +229,10 @@ class Animate(Case):
         self.sample("ball", "6,6", "flat.nrrd")
         self.sample("ball", "4,4,4,4,4", "five.nrrd")
         ply = ["-o", "f_%d.ply"]
+        self.sample("ball", "6,6,6", "curve.nrrd")
+        self.ok("extract", "curve.nrrd", "--iso", "0.5", "-o", "curve.ply")
         for arguments, words in [
-                (["torus.nrrd", "--iso", "0.5", *ply], ["--frames", "--times"]),
+                (["curve.ply", "-o", "f_%d.obj"], ["--frames", "--times"]),  # a mesh that knows of no steps
                 (["torus.nrrd", "--iso", "0.5", "--frames", "3", "--times", "0.5", *ply], ["--frames", "--times"]),
                 (["torus.nrrd", "--iso", "0.5", "--frames", "0", *ply], ["--frames", "0"]),
                 (["torus.nrrd", "--iso", "0.5", "--frames", "many", *ply], ["--frames", "many"]),

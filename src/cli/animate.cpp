@@ -17,7 +17,9 @@ namespace {
 
 struct Animate {
   FieldOptions input;
-  std::string iso, frames, times;
+  std::optional<TrackedFolder> folder; // where that is the input
+  TrackingOptions tracking;            // --iso, and the others as `folder` says
+  std::string frames, times;
   bool events = false, tracks = false;
   SurfaceOptions surface;
   PointDataOptions data;
@@ -51,6 +53,18 @@ std::vector<double> spread(std::int64_t count, const std::pair<double, double>& 
   return times;
 }
 
+// The stored steps, forward in time.
+std::vector<double> steps_of(const Axis& axis) {
+  if (axis.count == 0 || !std::isfinite(axis.coordinate(0)))
+    fail_usage(
+        "the surface does not know the steps of its field: say which moments to show, by --frames N or "
+        "--times T[,T...]");
+  std::vector<double> times;
+  for (std::int64_t step = 0; step < axis.count; ++step) times.push_back(axis.coordinate(step));
+  if (!axis.increasing()) std::ranges::reverse(times);
+  return times;
+}
+
 std::vector<double> moments(const Animate& options, const Frames& frames) {
   if (!options.times.empty()) {
     std::vector<double> times = parse_series("--times", options.times);
@@ -61,6 +75,7 @@ std::vector<double> moments(const Animate& options, const Frames& frames) {
     }
     return times;
   }
+  if (options.frames.empty()) return steps_of(frames.axes().back());
   const std::int64_t count = parse_integer("--frames", options.frames);
   constexpr std::int64_t most = 1'000'000;
   if (count < 1 || count > most) fail_usage(text("--frames: ", count, " is not from 1 to ", most));
@@ -85,29 +100,34 @@ std::size_t add_events(Frames& frames, std::vector<double>& times) {
 std::unique_ptr<Frames> frames_for(const Animate& options, Outcome& outcome) {
   const bool from_mesh = options.input.paths.size() == 1 && is_mesh_file(options.input.paths[0]);
   if (from_mesh) {
-    if (!options.iso.empty()) fail_usage("--iso: the input is a mesh; its isovalue is chosen already");
+    if (!options.tracking.iso.empty())
+      fail_usage("--iso: the input is a mesh; its isovalue is chosen already");
     if (options.data.from_field())
       fail_usage("--with, --normals: the input is a mesh; give them when it is extracted");
     if (options.tracks) fail_usage("--tracks: the input is a mesh; tracking needs the field");
     return frames_of_mesh(options.input.paths[0], options.surface, options.machine, options.printing);
   }
-  if (options.iso.empty()) fail_usage("--iso is required to animate a field");
-  const std::vector<double> isovalues = parse_isovalues(options.iso);
+  if (options.tracking.iso.empty()) fail_usage("--iso is required to animate a field");
+  const std::vector<double> isovalues = parse_isovalues(options.tracking.iso);
   if (isovalues.size() != 1) fail_usage("--iso: an animation shows one isovalue");
   outcome.isovalue = isovalues[0];
   // Surfaces of barycentric do not know where their vertices came from.
   const bool can = options.surface.method != "barycentric";
   const bool normals = options.data.normals || (can && options.movie.is_shaded());
-  const auto frames_of = options.tracks ? frames_with_tracks : frames_of_field;
-  return frames_of(options.input, isovalues[0], options.surface, options.data, normals, options.machine,
-                   options.printing);
+  if (!options.tracks)
+    return frames_of_field(options.input, isovalues[0], options.surface, options.data, normals,
+                           options.machine, options.printing);
+  return frames_with_tracks(options.input, options.tracking, options.folder ? &*options.folder : nullptr,
+                            options.surface, options.data, normals, options.machine, options.printing);
 }
 
 Outcome animate(const Animate& options) {
   Outcome outcome;
   options.movie.check();
   if (options.tracks && !options.data.colour_by.empty())
-    fail_usage("--tracks and --colour-by both choose the colours: give one of them");
+    fail_usage(options.folder
+                   ? "--colour-by: the input is a folder of tracks, which choose the colours; leave it out"
+                   : "--tracks and --colour-by both choose the colours: give one of them");
   const auto frames = frames_for(options, outcome);
   const auto dimension = static_cast<int>(frames->axes().size()) - 1;
   options.movie.check_frames(dimension);
@@ -154,9 +174,14 @@ Outcome animate(const Animate& options) {
   return outcome;
 }
 
-int run(const Animate& options) {
-  if (options.frames.empty() == options.times.empty())
-    fail_usage("say which moments to show: either --frames N or --times T[,T...]");
+int run(Animate options, const CLI::App& verb) {
+  if (!options.frames.empty() && !options.times.empty())
+    fail_usage("--frames and --times both say which moments to show: give one of them");
+  if (names_folder(options.input)) {
+    options.folder = open_tracked_folder(options.input, verb);
+    options.folder->choose(options.input, options.tracking, options.surface);
+    options.tracks = true;
+  }
   const Outcome outcome = animate(options);
   if (options.printing.json) {
     Json object{{"frames", outcome.frames}};
@@ -189,8 +214,11 @@ int run(const Animate& options) {
 Command animate_command(CLI::App& program) {
   auto options = std::make_shared<Animate>();
   CLI::App* app = program.add_subcommand("animate", "the surface at many times: films, glTF, numbered files");
-  options->input.add_to(*app, "; or a mesh that 'hyperiso extract' wrote as .vtu");
-  app->add_option("--frames", options->frames, "how many moments, evenly from the first to the last")
+  options->input.add_to(
+      *app, "; or a mesh that 'hyperiso extract' wrote as .vtu; or a folder that 'hyperiso track' "
+            "wrote, and after it the field, if that is no longer where it was");
+  app->add_option("--frames", options->frames,
+                  "how many moments, evenly from the first to the last; left out: the stored steps")
       ->type_name("N")
       ->group("Moments");
   app->add_option(
@@ -206,10 +234,10 @@ Command animate_command(CLI::App& program) {
   app->add_flag(
          "--tracks", options->tracks,
          "follow the components: a colour for each in films and pictures, a node for each in .glb, cell "
-         "data track_id in .pvd. Between two steps a piece goes by its track at the first of them. The "
-         "whole surface is held in memory")
+         "data track_id in .pvd; always so where INPUT is a folder of tracks. Between two steps a piece goes "
+         "by its track at the first of them. The whole surface is held in memory")
       ->group("Surface");
-  app->add_option("--iso", options->iso, "fields: the isovalue")->type_name("V")->group("Surface");
+  app->add_option("--iso", options->tracking.iso, "fields: the isovalue")->type_name("V")->group("Surface");
   options->surface.add_to(*app);
   options->data.add_to(*app, "films, pictures, .glb, .ply, by an axis too", "of all frames");
   options->movie.add_to(*app, options->data);
@@ -217,7 +245,8 @@ Command animate_command(CLI::App& program) {
   options->machine.add_to(*app);
   set_manual(
       *app,
-      {{"animate INPUT... --iso V --frames N -o PATH [options]", "animate MESH --frames N -o PATH [options]"},
+      {{"animate INPUT... --iso V -o PATH [options]", "animate MESH -o PATH [options]",
+        "animate FOLDER -o PATH [options]"},
        {"Shows a 4D surface as it changes: cut at many times, between the stored steps as well as on them, "
         "so "
         "that it moves smoothly and what merges or parts does so in its place. Surfaces of 3D fields give "
@@ -236,10 +265,13 @@ Command animate_command(CLI::App& program) {
         {"for a web page or a presentation, with frames where drops part and merge",
          "hyperiso animate examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 --frames 41 --events -o "
          "water.glb"},
+        {"a node and a colour for each track of a folder that track wrote",
+         "hyperiso track examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 --steps 16: -o water && "
+         "hyperiso animate water -o tracks.glb"},
         {"for ParaView",
          "hyperiso animate examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 --times 0:0.5:0.05 -o "
          "water.pvd"}}});
-  return {app, [options] { return run(*options); }};
+  return {app, [options, app] { return run(*options, *app); }};
 }
 
 } // namespace hyperiso::cli

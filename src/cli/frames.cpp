@@ -59,16 +59,6 @@ void add_track_ids(Mesh& mesh, const TrackingGraph& graph) {
   mesh.attributes.push_back({"track_id", Attribute::Location::simplex, 1, std::move(tracks)});
 }
 
-TrackingGraph track_of(StepSource& steps, double isovalue, const ExtractOptions& extraction, bool measured,
-                       bool quiet) {
-  ProgressBar bar("track", quiet);
-  TrackOptions tracking;
-  tracking.extraction = extraction;
-  tracking.extraction.progress = bar.callback();
-  tracking.measure_features = measured;
-  return take(track(steps, isovalue, tracking));
-}
-
 std::vector<double> times_of_events(const TrackingGraph& graph, const WorldTime& world_time) {
   std::vector<double> times;
   for (const TrackingEvent& event : graph.events)
@@ -105,7 +95,12 @@ class FieldFrames final : public Frames {
   }
 
   std::vector<double> events() override {
-    return times_of_events(track_of(*steps_, isovalue_, extraction_, false, quiet_), world_time_);
+    ProgressBar bar("track", quiet_);
+    TrackOptions tracking;
+    tracking.extraction = extraction_;
+    tracking.extraction.progress = bar.callback();
+    tracking.measure_features = false;
+    return times_of_events(take(track(*steps_, isovalue_, tracking)), world_time_);
   }
 
  private:
@@ -192,16 +187,18 @@ std::unique_ptr<Frames> frames_of_field(const FieldOptions& input, double isoval
   });
 }
 
-std::unique_ptr<Frames> frames_with_tracks(const FieldOptions& input, double isovalue,
-                                           const SurfaceOptions& surface, const PointDataOptions& data,
-                                           bool normals, const MachineOptions& machine,
-                                           const PrintOptions& printing) {
+std::unique_ptr<Frames> frames_with_tracks(const FieldOptions& input, const TrackingOptions& tracking,
+                                           const TrackedFolder* folder, const SurfaceOptions& surface,
+                                           const PointDataOptions& data, bool normals,
+                                           const MachineOptions& machine, const PrintOptions& printing) {
   if (surface.method == "barycentric")
     fail_usage("--tracks: surfaces by --method barycentric have no grid edges to find their tracks by");
-  ExtractOptions extraction = surface.extract_options(machine);
+  const TrackOptions track_options = tracking.track_options(surface, machine);
+  const double isovalue = tracking.isovalue();
   SelectedSteps steps(input.open(machine), input);
   check_dimension(steps.info().dimension(), lowest_animated, highest_dimension, "the field");
   check_axes(steps.info());
+  if (folder) folder->check_field(steps.info());
   const WorldTime world_time(steps.info());
   const std::int64_t count = steps.info().axes.back().count;
   const Field field = take(steps.read(0, count));
@@ -209,9 +206,10 @@ std::unique_ptr<Frames> frames_with_tracks(const FieldOptions& input, double iso
   for (const NamedSteps& other : data.open(input, machine))
     others.push_back({other.name, take(other.steps->read(0, other.steps->info().axes.back().count))});
   FieldSteps in_memory(field);
-  const TrackingGraph graph = track_of(in_memory, isovalue, extraction, true, printing.quiet);
+  const TrackingGraph graph = tracking.track(in_memory, track_options, printing.quiet);
+  if (folder) folder->check_tracks(graph);
 
-  extraction = surface.extract_options(machine); // with the memory that is left now
+  const ExtractOptions extraction = surface.extract_options(machine); // with the memory that is left now
   return with_view<lowest_animated>(field, [&]<class T, int D>(const FieldView<T, D>& view) {
     Mesh mesh = take(extract(view, isovalue, extraction));
     if (normals || !others.empty())

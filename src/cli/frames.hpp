@@ -3,6 +3,7 @@
 
 #include "cli/point_data.hpp"
 #include "cli/surface.hpp"
+#include "cli/tracked_folder.hpp"
 
 #include <memory>
 
@@ -28,11 +29,11 @@ std::unique_ptr<Frames> frames_of_field(const FieldOptions& input, double isoval
                                         const PrintOptions& printing);
 
 // The same with the simplex attribute `track_id`: by the track that a piece was in at the step before. The
-// whole surface is in memory.
-std::unique_ptr<Frames> frames_with_tracks(const FieldOptions& input, double isovalue,
-                                           const SurfaceOptions& surface, const PointDataOptions& data,
-                                           bool normals, const MachineOptions& machine,
-                                           const PrintOptions& printing);
+// whole surface is in memory. `folder`: whose tracks they have to be, or null.
+std::unique_ptr<Frames> frames_with_tracks(const FieldOptions& input, const TrackingOptions& tracking,
+                                           const TrackedFolder* folder, const SurfaceOptions& surface,
+                                           const PointDataOptions& data, bool normals,
+                                           const MachineOptions& machine, const PrintOptions& printing);
 
 // Of a mesh file, indexed.
 std::unique_ptr<Frames> frames_of_mesh(const std::string& path, const SurfaceOptions& surface,

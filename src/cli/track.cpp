@@ -8,6 +8,7 @@
 #include "cli/point_data.hpp"
 #include "cli/seed.hpp"
 #include "cli/surface.hpp"
+#include "cli/tracked_folder.hpp"
 #include "core/memory.hpp"
 #include "core/text.hpp"
 #include "hyperiso/slice.hpp"
@@ -25,45 +26,14 @@ namespace {
 struct Track {
   FieldOptions input;
   std::vector<std::string> seeds, with;
-  std::string iso, range, tracked, overlap, overlap_volumes, select, minimum_volume, minimum_duration,
-      directory;
+  std::string select, directory;
+  TrackingOptions tracking;
   SurfaceOptions surface;
   PrintOptions printing;
   MachineOptions machine;
 
   bool is_local() const { return !seeds.empty() || !select.empty(); }
 };
-
-// "0.35" or "35%"
-double parse_share(std::string_view option, std::string value) {
-  const bool percent = !value.empty() && value.back() == '%';
-  if (percent) value.pop_back();
-  const double share = parse_number(option, value) / (percent ? 100 : 1);
-  if (share < 0 || share >= 1)
-    fail_usage(text(option, ": ", share, " is not a share; give one from 0 to 1, or from 0% to 100%"));
-  return share;
-}
-
-TrackOptions track_options(const Track& options) {
-  TrackOptions result;
-  result.extraction = options.surface.extract_options(options.machine);
-  if (!options.tracked.empty() && options.tracked != "surface" && options.tracked != "region")
-    fail_usage(text("--track: '", options.tracked, "' is neither surface nor region"));
-  if (options.tracked == "region" || !options.range.empty()) result.tracked = Tracked::region;
-  if (options.overlap_volumes == "exact")
-    result.overlap_volumes = OverlapVolumes::exact;
-  else if (!options.overlap_volumes.empty() && options.overlap_volumes != "cells")
-    fail_usage(text("--overlap-volumes: '", options.overlap_volumes, "' is neither cells nor exact"));
-  if (!options.overlap.empty()) result.overlap_threshold = parse_share("--overlap", options.overlap);
-  return result;
-}
-
-double not_negative(const char* option, const std::string& value) {
-  if (value.empty()) return 0;
-  const double number = parse_number(option, value);
-  if (number < 0) fail_usage(text(option, ": ", number, " is negative"));
-  return number;
-}
 
 // The seed of a track by the table of a former run: the last column of its row.
 std::string seed_of_track(const std::string& select) {
@@ -89,34 +59,22 @@ std::string seed_of_track(const std::string& select) {
   fail_usage(text("--select: ", path, " has no track ", wanted));
 }
 
-// What is tracked: at one isovalue, or from one to another.
-struct Isovalues {
-  double first;
-  std::optional<double> upper;
-};
-Isovalues isovalues_of(const Track& options) {
-  if (options.iso.empty() == options.range.empty()) fail_usage("give either --iso or --range");
-  if (!options.iso.empty()) {
-    const std::vector<double> isovalues = parse_isovalues(options.iso);
-    if (isovalues.size() > 1) fail_usage("--iso: one isovalue is tracked at a time");
-    return {isovalues[0], {}};
-  }
-  if (options.tracked == "surface") fail_usage("--range tracks a region; it cannot go with --track surface");
-  const auto colon = options.range.find(':');
-  if (colon == std::string::npos) fail_usage(text("--range: '", options.range, "' is not A:B"));
-  return {parse_number("--range", options.range.substr(0, colon)),
-          parse_number("--range", options.range.substr(colon + 1))};
+TrackedFolder folder_of(const Track& options) {
+  TrackedFolder folder{options.directory, options.input, options.surface,
+                       options.tracking,  options.seeds, {}};
+  if (!options.select.empty()) folder.seeds.push_back(seed_of_track(options.select));
+  return folder;
 }
 
-TrackingGraph make_graph(const Track& options, StepSource& steps, double isovalue, TrackOptions tracking) {
-  ProgressBar bar("track", options.printing.quiet);
+// Through the seeds alone.
+TrackingGraph local_graph(const TrackedFolder& folder, StepSource& steps, TrackOptions tracking, bool quiet) {
+  ProgressBar bar("track", quiet);
   tracking.extraction.progress = bar.callback();
-  if (!options.is_local()) return take(track(steps, isovalue, tracking));
   std::vector<std::vector<std::int64_t>> cells;
-  const std::vector<Axis>& axes = steps.info().axes;
-  for (const std::string& seed : options.seeds) cells.push_back(cell_at(seed, axes));
-  if (!options.select.empty()) cells.push_back(cell_at(seed_of_track(options.select), axes));
-  return take(track_from_seeds(steps, isovalue, cells, tracking)).graph;
+  for (const std::string& seed : folder.seeds) cells.push_back(cell_at(seed, steps.info().axes));
+  TrackingGraph graph = take(track_from_seeds(steps, folder.tracking.isovalue(), cells, tracking)).graph;
+  folder.tracking.simplify(graph);
+  return graph;
 }
 
 // One surface per step, named by its tracks, and a series of them.
@@ -130,7 +88,8 @@ void write_surfaces(const Track& options, const TrackingGraph& graph, SelectedSt
   for (std::int64_t step = 0; step < graph.steps; ++step) {
     bar.show(static_cast<double>(step) / static_cast<double>(graph.steps));
     const Field field = take(steps.read(step, step + 1));
-    const Mesh surface = take(tracked_surface(graph, field, step, track_options(options)));
+    const TrackOptions tracking = options.tracking.track_options(options.surface, options.machine);
+    const Mesh surface = take(tracked_surface(graph, field, step, tracking));
     const bool region = graph.tracked == Tracked::region;
     const std::string name =
         fmt::format("{}_{:04}.{}", region ? "region" : "surface", step, region ? "vtu" : "vtp");
@@ -140,9 +99,11 @@ void write_surfaces(const Track& options, const TrackingGraph& graph, SelectedSt
   take(write_series(series, directory / "tracks.pvd", &files));
 }
 
-void write_outputs(const Track& options, const TrackingGraph& graph, SelectedSteps& steps) {
+void write_outputs(const Track& options, const TrackedFolder& folder, const TrackingGraph& graph,
+                   SelectedSteps& steps) {
   FileGroup files;
   take(write_tracking(graph, options.directory, &files));
+  write_source(folder, steps.info(), files);
   if (!options.is_local()) write_surfaces(options, graph, steps, files);
   take(files.commit());
 }
@@ -176,30 +137,27 @@ std::string report_of(const Track& options, const TrackingGraph& graph, double t
 }
 
 int run(const Track& options) {
-  const Isovalues isovalues = isovalues_of(options);
-  TrackOptions tracking = track_options(options);
-  tracking.upper_isovalue = isovalues.upper;
-  const double minimum_volume = not_negative("--min-volume", options.minimum_volume);
-  const double minimum_duration = not_negative("--min-duration", options.minimum_duration);
-
+  TrackOptions tracking = options.tracking.track_options(options.surface, options.machine);
   if (options.is_local() && tracking.tracked == Tracked::region)
     fail_usage("--seed and --select follow surfaces; leave out --track region and --range");
   if (options.is_local() && !options.with.empty())
     fail_usage("--with: with --seed or --select no features are measured");
+  const TrackedFolder folder = folder_of(options);
   SelectedSteps steps(options.input.open(options.machine), options.input);
   PointDataOptions beside;
   beside.with = options.with;
   const std::vector<NamedSteps> others = beside.open(options.input, options.machine);
   for (const NamedSteps& other : others) tracking.with.push_back({other.name, other.steps.get()});
   const Stopwatch watch;
-  TrackingGraph graph = make_graph(options, steps, isovalues.first, tracking);
+  const TrackingGraph graph = options.is_local()
+                                  ? local_graph(folder, steps, tracking, options.printing.quiet)
+                                  : options.tracking.track(steps, tracking, options.printing.quiet);
   const double track_seconds = watch.seconds();
-  simplify(graph, minimum_volume, minimum_duration);
   if (graph.tracks.empty() && !options.printing.quiet)
-    print_warning(text("there is nothing at ", options.iso, options.range,
+    print_warning(text("there is nothing at ", options.tracking.iso, options.tracking.range,
                        "; 'hyperiso info' tells the range of the field"));
 
-  if (!options.directory.empty()) write_outputs(options, graph, steps);
+  if (!options.directory.empty()) write_outputs(options, folder, graph, steps);
   if (options.printing.json) {
     Json object = Json::parse(tracking_summary_json(graph));
     object["seconds"] = {{"track", track_seconds}};
@@ -217,17 +175,7 @@ Command track_command(CLI::App& program) {
   auto options = std::make_shared<Track>();
   CLI::App* app = program.add_subcommand("track", "what happens to each component through time, and when");
   options->input.add_to(*app);
-  app->add_option("--iso", options->iso, "the isovalue")->type_name("V")->group("Surface");
-  app->add_option("--range", options->range,
-                  "two isovalues: track what lies between them, from one surface to the other")
-      ->type_name("A:B")
-      ->group("Surface");
-  app->add_option("--track", options->tracked,
-                  "surface: components of the isosurface; region: of what is inside it, so that a hollow "
-                  "thing is one, not two")
-      ->type_name("WHAT")
-      ->default_str("surface")
-      ->group("Tracks");
+  options->tracking.add_to(*app);
   options->surface.add_to(*app);
   app->add_option(
          "--seed", options->seeds,
@@ -245,28 +193,6 @@ Command track_command(CLI::App& program) {
       ->type_name("[NAME=]FIELD[,...]")
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->group("Tracks");
-  app->add_option(
-         "--overlap", options->overlap,
-         "cut tracks where a component and what it is one step later overlap by no more than this share "
-         "of the smaller one; 35% is usual")
-      ->type_name("SHARE")
-      ->group("Tracks");
-  app->add_option(
-         "--overlap-volumes", options->overlap_volumes,
-         "cells: overlaps count cells by the share of their corners inside; exact: they are volumes of "
-         "the piecewise linear field")
-      ->type_name("HOW")
-      ->default_str("cells")
-      ->group("Tracks");
-  app->add_option("--min-volume", options->minimum_volume,
-                  "mark tracks that never reach this volume as simplified")
-      ->type_name("V")
-      ->group("Tracks");
-  app->add_option("--min-duration", options->minimum_duration,
-                  "mark tracks that last less as simplified, if they are born, die, or come back to where "
-                  "they split off")
-      ->type_name("T")
       ->group("Tracks");
   app->add_option("-o,--output", options->directory, "the folder for all files; made if it does not exist")
       ->type_name("FOLDER")
@@ -290,9 +216,9 @@ Command track_command(CLI::App& program) {
         "where two surfaces bound one shell there is one component, and it is that which merges and splits. "
         "genus is then any change of its Euler characteristic.",
         "With -o: tables (tracks.csv, features.csv, events.csv), events.json, the graph as GraphML, GEXF, "
-        "DOT, "
-        "JSON and VTU, pictures (graph.svg, volume.svg), tracks.pvd with the surface or region of each "
-        "step named by its tracks, and files for napari. Coordinates are those of the field's axes."},
+        "DOT, JSON and VTU, pictures (graph.svg, volume.svg), tracks.pvd with the surface or region of each "
+        "step named by its tracks, and files for napari. Coordinates are those of the field's axes. "
+        "source.json says what was tracked and how: view and animate take the folder for an input."},
        {{"what happens to the water of a dam break",
          "hyperiso track examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 -o water"},
         {"the same, without drops", "hyperiso track examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 "

@@ -8,6 +8,7 @@
 #include "cli/point_data.hpp"
 #include "cli/steps.hpp"
 #include "cli/surface.hpp"
+#include "cli/tracked_folder.hpp"
 #include "core/memory.hpp"
 #include "hyperiso/track.hpp"
 
@@ -30,8 +31,9 @@ constexpr int most_halvings = 4;
 
 struct View {
   FieldOptions input;
-  std::string iso;
+  TrackingOptions tracking; // --iso, and the others as `folder` says
   SurfaceOptions surface;
+  std::optional<TrackedFolder> folder; // where that is the input
   std::string path, title, colour_by, payload, size = default_size;
   bool track = false, open = false;
   PrintOptions printing;
@@ -41,7 +43,7 @@ struct View {
 // What the page shows.
 struct Content {
   std::unique_ptr<Mesh> mesh;         // of a page that holds the surface
-  Field field;                        // of a page that holds samples
+  Field field;                        // as far as it is needed still
   std::optional<PageSamples> samples; // what of them
   PageSurface surface{};
   PageOptions page;
@@ -51,6 +53,7 @@ struct Content {
 
 std::string title_of(const View& options) {
   if (!options.title.empty()) return options.title;
+  if (options.folder) return options.folder->name();
   return std::filesystem::path(options.input.paths[0]).stem().string();
 }
 
@@ -119,10 +122,19 @@ std::string fewer_samples(std::uint64_t size, int times) {
                      byte_size(size), times == 2 ? "second" : fmt::format("{}th", times));
 }
 
-// Says in the page and to the caller what was left out.
-void tell(const View& options, const std::string& what, Content& content) {
+// Says in the page and to the caller that samples were left out.
+void tell_fewer_samples(const View& options, std::uint64_t size, int times, Content& content) {
+  const std::string what = fewer_samples(size, times);
   content.page.notes.push_back("The " + what + ".");
   if (!options.printing.quiet) print_warning("the " + what);
+}
+
+// Fails where samples must not be left out, as the tracks of a folder would not be those of what is left.
+void check_fewer_samples(const View& options, std::uint64_t size) {
+  if (options.folder)
+    fail_usage(text("the page would be larger than ", byte_size(size),
+                    ", and fewer samples have other tracks than ", options.folder->path,
+                    "; give a higher limit by --max-size"));
 }
 
 double expected_bytes(const Content& content) {
@@ -134,21 +146,25 @@ void fit(const View& options, std::uint64_t size, double isovalue, Field& field,
   int times = 1;
   for (int halving = 0; halving < most_halvings; ++halving) {
     if (expected_bytes(content) <= static_cast<double>(size)) break;
+    check_fewer_samples(options, size);
     field = halved(std::move(field));
     times *= 2;
     content.mesh = surface_of(options, field, isovalue);
   }
-  if (times > 1) tell(options, fewer_samples(size, times), content);
+  if (times > 1) tell_fewer_samples(options, size, times, content);
 }
 
-void track_components(const View& options, StepSource& steps, double isovalue, Content& content) {
+void track_components(const View& options, StepSource& steps, Content& content) {
+  if (!options.track) return;
   if (!steps.info().has_time) fail_usage("--track: no axis of the field is time");
-  TrackOptions tracking;
-  tracking.extraction = options.surface.extract_options(options.machine);
-  ProgressBar bar("track", options.printing.quiet);
-  tracking.extraction.progress = bar.callback();
-  content.tracking = take(track(steps, isovalue, tracking));
+  const TrackOptions tracking = options.tracking.track_options(options.surface, options.machine);
+  content.tracking = options.tracking.track(steps, tracking, options.printing.quiet);
+  if (options.folder) options.folder->check_tracks(content.tracking);
   content.page.tracking = &content.tracking;
+}
+void track_components(const View& options, Content& content) {
+  FieldSteps steps(content.field);
+  track_components(options, steps, content);
 }
 
 // What the page says of the field that its surface is of.
@@ -176,11 +192,12 @@ void stream_field(const View& options, std::uint64_t size, SelectedSteps& steps,
     content.mesh.reset();
     content.mesh = std::make_unique<Mesh>(take(collect_surface(*thinned, isovalue, extraction)));
     if (expected_bytes(content) <= static_cast<double>(size) || times == 1 << most_halvings) break;
+    check_fewer_samples(options, size);
   }
-  if (times > 1) tell(options, fewer_samples(size, times), content);
+  if (times > 1) tell_fewer_samples(options, size, times, content);
   if (content.mesh->simplex_count() == 0 && !options.printing.quiet)
     print_warning(why_empty(steps, isovalue));
-  if (options.track) track_components(options, *thinned, isovalue, content);
+  track_components(options, *thinned, content);
   content.read_seconds = steps.read_seconds();
   content.extract_seconds = watch.seconds() - content.read_seconds;
   describe(thinned->info(), content);
@@ -192,13 +209,14 @@ Field whole_field(SelectedSteps& steps, const View& options) {
 }
 
 void read_field(const View& options, std::uint64_t size, Content& content) {
-  const std::vector<double> isovalues = parse_isovalues(options.iso);
+  const std::vector<double> isovalues = parse_isovalues(options.tracking.iso);
   if (isovalues.size() != 1) fail_usage("--iso: a page shows one isovalue");
   const ExtractOptions extraction = options.surface.extract_options(options.machine); // told before reading
   SelectedSteps steps(options.input.open(options.machine), options.input);
   const FieldInfo& info = steps.info();
   check_dimension(info.dimension(), lowest_shown, highest_dimension, "the field");
   check_axes(info);
+  if (options.folder) options.folder->check_field(info);
   content.page.isovalue = isovalues[0];
   const bool of_surface = options.payload.empty() || options.payload == "mesh";
   if (of_surface && info.bytes() > extraction.memory_limit && can_stream(info, extraction))
@@ -221,20 +239,16 @@ void read_field(const View& options, std::uint64_t size, Content& content) {
   if (content.mesh) fit(options, size, isovalues[0], field, content);
   if (content.mesh && content.mesh->simplex_count() == 0 && !options.printing.quiet)
     print_warning(why_empty(field, isovalues[0]));
-  if (options.track) {
-    FieldSteps thinned(field);
-    track_components(options, thinned, isovalues[0], content);
-  }
+  content.field = std::move(field);
+  track_components(options, content);
   content.extract_seconds = extracting.seconds();
-  if (content.samples) {
-    content.field = std::move(field);
-    return;
-  }
-  describe(field.info, content);
+  if (content.samples) return;
+  describe(content.field.info, content);
+  content.field = {};
 }
 
 void read_surface(const View& options, Content& content) {
-  if (!options.iso.empty()) fail_usage("--iso: the input is a mesh; its isovalue is chosen already");
+  if (!options.tracking.iso.empty()) fail_usage("--iso: the input is a mesh; its isovalue is chosen already");
   if (options.track) fail_usage("--track: the input is a mesh; tracking needs the field");
   const Stopwatch reading;
   content.mesh = std::make_unique<Mesh>(take(read_mesh(options.input.paths[0])));
@@ -254,8 +268,10 @@ void write_samples(const View& options, std::uint64_t size, Content& content) {
   page.memory_limit = extraction.memory_limit;
   for (int times = 1;; times *= 2) {
     if (times > 1) {
+      check_fewer_samples(options, size);
       content.field = halved(std::move(content.field));
       content.page.notes = {"The " + fewer_samples(size, times) + "."};
+      track_components(options, content);
     }
     static_cast<PageOptions&>(page) = content.page;
     ProgressBar bar("write", options.printing.quiet);
@@ -343,10 +359,15 @@ void check_payload(const View& options, bool from_mesh) {
                     "for WebAssembly (docs/dependencies.md), or take --payload mesh"));
 }
 
-int run(const View& options) {
+int run(View options, const CLI::App& verb) {
   const std::uint64_t size = parse_bytes("--max-size", options.size);
+  if (names_folder(options.input)) {
+    options.folder = open_tracked_folder(options.input, verb);
+    options.folder->choose(options.input, options.tracking, options.surface);
+    options.track = true;
+  }
   const bool from_mesh = options.input.paths.size() == 1 && is_mesh_file(options.input.paths[0]);
-  if (!from_mesh && options.iso.empty()) fail_usage("--iso is required to view a field");
+  if (!from_mesh && options.tracking.iso.empty()) fail_usage("--iso is required to view a field");
   if (!options.payload.empty()) check_payload(options, from_mesh);
   Content content;
   if (from_mesh)
@@ -371,8 +392,10 @@ int run(const View& options) {
 Command view_command(CLI::App& program) {
   auto options = std::make_shared<View>();
   CLI::App* app = program.add_subcommand("view", "one HTML page that plays the surface and cuts it");
-  options->input.add_to(*app, "; or a mesh that 'hyperiso extract' wrote as .vtu");
-  app->add_option("--iso", options->iso, "fields: the isovalue")->type_name("V")->group("Surface");
+  options->input.add_to(
+      *app, "; or a mesh that 'hyperiso extract' wrote as .vtu; or a folder that 'hyperiso track' "
+            "wrote, and after it the field, if that is no longer where it was");
+  app->add_option("--iso", options->tracking.iso, "fields: the isovalue")->type_name("V")->group("Surface");
   options->surface.add_to(*app);
   app->add_option("-o,--output", options->path, "the page, a file that ends in .html")
       ->type_name("PATH")
@@ -410,7 +433,8 @@ Command view_command(CLI::App& program) {
   options->machine.add_to(*app);
   set_manual(
       *app,
-      {{"view INPUT... --iso V -o PAGE.html [options]", "view MESH -o PAGE.html [options]"},
+      {{"view INPUT... --iso V -o PAGE.html [options]", "view MESH -o PAGE.html [options]",
+        "view FOLDER -o PAGE.html [options]"},
        {"Writes one file that opens in any current browser, without a network: it plays the surface through "
         "time, continuously and exactly, cuts it by any hyperplane of space and time, colours it, reads "
         "points, "
@@ -425,13 +449,16 @@ Command view_command(CLI::App& program) {
          "water.html"},
         {"with what merges and parts on the time line",
          "hyperiso view examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 --track -o tracked.html"},
+        {"the same of a folder that track wrote", "hyperiso track examples/data/alpha_water_24x24x24x41.nrrd "
+                                                  "--iso 0.5 -o water && hyperiso view water "
+                                                  "-o tracked.html"},
         {"how the surface depends on the isovalue, from 0.3 to 0.7",
          "hyperiso interval examples/data/alpha_water_24x24x24x41.nrrd --steps 20:21 --range 0.3:0.7 -o "
          "shell.vtu && hyperiso view shell.vtu -o "
          "shell.html"},
         {"with a slider for the isovalue", "hyperiso view examples/data/alpha_water_24x24x24x41.nrrd --iso "
                                            "0.5 --payload field -o levels.html"}}});
-  return {app, [options] { return run(*options); }};
+  return {app, [options, app] { return run(*options, *app); }};
 }
 
 } // namespace hyperiso::cli
