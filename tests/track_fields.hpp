@@ -65,4 +65,56 @@ inline std::ptrdiff_t count_events(const TrackingGraph& graph, EventType type) {
   return std::ranges::count(graph.events, type, &TrackingEvent::type);
 }
 
+inline std::string name_of_reversed(EventType type) {
+  switch (type) {
+  case EventType::birth:
+    return "death";
+  case EventType::death:
+    return "birth";
+  case EventType::merge:
+    return "split";
+  case EventType::split:
+    return "merge";
+  case EventType::enter:
+    return "exit";
+  case EventType::exit:
+    return "enter";
+  case EventType::open_start:
+    return "open_end";
+  case EventType::open_end:
+    return "open_start";
+  default:
+    return name_of(type);
+  }
+}
+
+// Type, time, numbers of arcs and Euler jump of each event; as they would be were time to run backwards.
+inline std::multiset<std::string> signature(const TrackingGraph& graph, bool reversed = false) {
+  std::multiset<std::string> lines;
+  const double end = graph.axes.back().coordinate(graph.steps - 1);
+  for (const TrackingEvent& event : graph.events) {
+    char line[120];
+    auto in = event.arcs_in.size(), out = event.arcs_out.size();
+    if (reversed) std::swap(in, out);
+    std::snprintf(line, sizeof line, "%s %.9f %zu>%zu %+d",
+                  reversed ? name_of_reversed(event.type).c_str() : name_of(event.type),
+                  reversed ? end - event.time : event.time, in, out,
+                  static_cast<int>(reversed ? -event.delta_euler : event.delta_euler));
+    lines.insert(line);
+  }
+  return lines;
+}
+
+template <int D>
+OwnedField<float, D>
+map_samples(const OwnedField<float, D>& field,
+            const std::function<std::array<std::int64_t, D>(std::array<std::int64_t, D>)>& from,
+            const std::array<std::int64_t, D>& dims, float factor = 1) {
+  return check::make_field<float, D>(unit_grid<D>(dims), [&](const std::array<double, D>& point) {
+    std::array<std::int64_t, D> index;
+    for (int axis = 0; axis < D; ++axis) index[axis] = static_cast<std::int64_t>(point[axis]);
+    return factor * field.view.at(from(index));
+  });
+}
+
 } // namespace hyperiso::check
