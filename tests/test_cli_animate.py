@@ -162,6 +162,25 @@ class Animate(Case):
             field, mesh = (self.ok("measure", f"{kind}_{name}.ply", "--json").json() for kind in "fm")
             self.assertAlmostEqual(field["measure"]["content"] if "measure" in field else field["content"],
                                    mesh["measure"]["content"] if "measure" in mesh else mesh["content"], places=3)
+        moving = [self.ok("animate", *source, "--frames", "4", "--morph", "-o", "f.glb", "--json").json()
+                  for source in [["turned.nhdr", "--iso", "0.5"], ["turned.vtu"]]]
+        self.assertEqual(moving[0]["simplices"], moving[1]["simplices"])
+        self.assertEqual(moving[0]["vertices"], moving[1]["vertices"])
+        header = (self.folder / "turned.nhdr").read_text()
+        (self.folder / "sheared.nhdr").write_text(header.replace("(0,0,0,0.5)", "(0.3,0,0,0.5)"))
+        self.assert_refused(2, "animate", "sheared.nhdr", "--iso", "0.5", "--frames", "3", "--morph", "-o", "s.glb",
+                            words=["--morph", "moves space"])
+        self.ok("animate", "sheared.nhdr", "--iso", "0.5", "--frames", "3", "--morph", "--tracks", "-o", "s.glb")
+
+    def test_frames_that_move_have_a_target_each(self):
+        self.torus()
+        still = self.ok("animate", "torus.nrrd", "--iso", "0.5", "--times", "0.1,0.3,0.4", "-o", "s.glb", "--json").json()
+        moving = self.ok("animate", "torus.nrrd", "--iso", "0.5", "--times", "0.1,0.3,0.4", "--morph", "-o", "m.glb",
+                         "--json").json()
+        self.assertEqual(still["simplices"], moving["simplices"])
+        data = (self.folder / "m.glb").read_bytes()
+        meshes = json.loads(data[20:20 + struct.unpack_from("<I", data, 12)[0]])["meshes"]
+        self.assertEqual(["targets" in mesh["primitives"][0] for mesh in meshes], [True, True, False])
 
     def test_colours_have_one_range_for_all_frames(self):
         self.sample("ball", "12,12,12,5", "ball.nrrd")
@@ -254,6 +273,7 @@ class Animate(Case):
                 (["torus.vtu", "--times", "9", *ply], ["9"]),
                 (["torus.nrrd", "--iso", "0.5", "--frames", "3", "--fps", "5", *ply], ["--fps", ".ply"]),
                 (["torus.nrrd", "--iso", "0.5", "--frames", "3", "--quantise", *ply], ["--quantise", ".ply"]),
+                (["torus.nrrd", "--iso", "0.5", "--frames", "3", "--morph", *ply], ["--morph", ".ply"]),
                 (["torus.nrrd", "--iso", "0.5", "--frames", "3", "--fps", "0", "-o", "a.glb"], ["--fps", "0"]),
                 (["torus.nrrd", "--iso", "0.5", "--frames", "3", "--colour-by", "density", "-o", "a.glb"], ["density"]),
                 (["torus.nrrd", "--iso", "0.5", "--frames", "3", "--colour-by", "x", "-o", "a.pvd"], ["--colour-by"]),

@@ -67,6 +67,23 @@ class Glb(unittest.TestCase):
                 self.assertGreater(bounds[1], 0.3)
                 self.assertLess(bounds[1], 1)
 
+    def test_frames_that_move(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+
+            def run(*words):
+                return subprocess.run([PROGRAM, *map(str, words)], cwd=folder, check=True, capture_output=True).stdout
+
+            run("sample", "ball", "--dims", "16,16,16,5", "--time", "-o", "ball.nrrd")
+            run("animate", "ball.nrrd", "--iso", "0.5", "--times", "0.5,0.55,0.9", "--morph", "-o", "ball.glb")
+            run("animate", "ball.nrrd", "--iso", "0.5", "--times", "0.5,0.55,0.9", "-o", "still.glb")
+            seconds = [0.001, 0.012, 0.024]  # the first of the two gaps, of 0.025 s
+            for path, moves in [("ball.glb", True), ("still.glb", False)]:
+                shown = self.frames_at(folder / path, seconds)
+                self.assertEqual([len(frame) for frame in shown], [1] * 3)
+                widths = [bounds[1] - bounds[0] for ((bounds, _),) in shown]
+                self.assertEqual(len(set(widths)), 3 if moves else 1, widths)
+
 
 if __name__ == "__main__":
     unittest.main()

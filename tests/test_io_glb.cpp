@@ -73,8 +73,42 @@ TEST(IoGlb, the_same_frames_give_the_same_bytes) {
   EXPECT_EQ(bytes("a.glb"), bytes("b.glb"));
 }
 
+// A frame that moves has a target, and its nodes are told how far it is; one that does not has none.
+TEST(IoGlb, a_target_for_frames_that_move) {
+  for (const bool quantised : {false, true}) {
+    GlbMovie movie({.quantised = quantised});
+    Mesh end = frame_of_tracks({});
+    end.positions.set(11, -2); // further than all are wide
+    EXPECT_TRUE(movie.add(frame_of_tracks({4, 7}), 0, 0, &end));
+    EXPECT_TRUE(movie.add(frame_of_tracks({}), 1, 0.5));
+    const Json json = json_of(movie);
+    ASSERT_EQ(json["meshes"].size(), 3u);
+    for (std::size_t mesh : {0, 1}) EXPECT_EQ(json["meshes"][mesh]["primitives"][0]["targets"].size(), 1u);
+    EXPECT_FALSE(json["meshes"][2]["primitives"][0].contains("targets"));
+    const std::size_t target = json["meshes"][0]["primitives"][0]["targets"][0]["POSITION"];
+    const Json& ways = json["accessors"][target];
+    EXPECT_EQ(ways["componentType"], quantised ? 5122 : 5126);
+    EXPECT_EQ(ways["min"][2], quantised ? -32767 : -4);
+    EXPECT_EQ(ways["max"], (Json{0, 0, 0}));
+    const Json& animation = json["animations"][0];
+    std::vector<std::string> moved;
+    for (const Json& channel : animation["channels"]) {
+      if (channel["target"]["path"] != "weights") continue;
+      moved.push_back(json["nodes"][channel["target"]["node"].get<std::size_t>()]["name"]);
+      const Json& sampler = animation["samplers"][channel["sampler"].get<std::size_t>()];
+      EXPECT_EQ(sampler["interpolation"], "LINEAR");
+      const Json& seconds = json["accessors"][sampler["input"].get<std::size_t>()];
+      EXPECT_EQ(seconds["min"], Json{0.0});
+      EXPECT_EQ(seconds["max"], Json{0.5});
+    }
+    EXPECT_EQ(moved, (std::vector<std::string>{"track 4", "track 7"}));
+  }
+}
+
 TEST(IoGlb, what_it_cannot_hold) {
   GlbMovie movie;
+  const Mesh other(3, 2);
+  EXPECT_EQ(movie.add(frame_of_tracks({}), 0, 0, &other).error().code, Code::invalid_argument);
   EXPECT_EQ(movie.write("none.glb").error().code, Code::invalid_argument);
   EXPECT_EQ(movie.add(Mesh(4, 3), 0, 0).error().code, Code::invalid_argument);
   EXPECT_EQ(movie.add(frame_of_tracks({}), 0, 1).error().code, Code::invalid_argument);

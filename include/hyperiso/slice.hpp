@@ -88,6 +88,31 @@ template <int D, int K>
 Result<SimplexMesh<D - 1, K - 1>> slice(const SimplexMesh<D, K>& mesh, const Hyperplane<D>& plane,
                                         const SliceOptions& options = {});
 
+/// A slice that moves for a while: its vertices where they are first, and where they are last. Positions and
+/// attributes of vertices differ; the simplices and their attributes are the same in both.
+template <int D>
+struct MovingSlice {
+  SimplexMesh<D - 1> start, end;
+};
+
+/// The slice of a surface across `axis` at `start`, moving until `end`, which may come before it. Each vertex
+/// lies on one edge of the mesh and slides along it: to where the edge is at `end`, or to the end of the edge
+/// where that comes first. Welded and oriented as `slice`, with its attributes.
+///
+/// The simplices are those of the surface as it is just after `start` (on the side of `end`). Seen as points,
+/// `start` is `slice(mesh, Hyperplane<D>::at(axis, start))` without what ends there; where vertices of the
+/// mesh have just that time, as at a stored step, several vertices start from one point, and simplices
+/// without extent. Until the next time of any vertex of the mesh the points at the share w of the way are the
+/// slice at that share of the time, to rounding; from then on they are an approximation that keeps the
+/// topology of the start.
+///
+/// For renderers that blend: as morph targets of glTF.
+/// Cost: one pass over the mesh. Types: D = 3, 4. Errors: invalid_argument if `axis` is none or if `start`
+/// and `end` are equal or not finite; out_of_memory.
+template <int D>
+Result<MovingSlice<D>> moving_slice(const SimplexMesh<D>& mesh, double start, double end,
+                                    Precision precision = Precision::f32, int axis = D - 1);
+
 /// A mesh prepared for many cuts: its simplices in chunks that lie together, each with a box around it, the
 /// positions of its vertices and its edges, by which the chunks that a plane meets are cut without looking
 /// anywhere else.
@@ -153,6 +178,11 @@ class FieldSlicer {
   /// outside_domain if a plane across an axis misses the field. An oblique plane that misses it gives an
   /// empty mesh.
   Result<SimplexMesh<D - 1, K - 1>> slice(const Hyperplane<D>& plane);
+
+  /// `moving_slice` of the surface across its last axis, from the samples around `start` alone: vertices stop
+  /// at the next samples at the latest, where all edges of the mesh end. Errors: as above; outside_domain if
+  /// the field is not there from `start` on.
+  Result<MovingSlice<D>> moving_slice(double start, double end) requires(K == D - 1);
 
  private:
   class Work;

@@ -141,28 +141,36 @@ Outcome animate(const Animate& options) {
   series.times = times;
   series.isovalue = outcome.isovalue;
   series.threads = options.machine.thread_count();
-  const auto slice = [&](double time) {
+  const auto timed = [&](const auto& slice) {
     const Stopwatch slicing;
-    Mesh mesh = frames->at(time);
+    auto result = slice();
     outcome.slice_seconds += slicing.seconds();
-    return mesh;
+    return result;
   };
   if (options.movie.needs_survey()) {
     ProgressBar bar("look", options.printing.quiet);
     for (std::size_t i = 0; i < times.size(); ++i) {
       bar.show(static_cast<double>(i) / static_cast<double>(times.size()));
-      series.look_at(slice(times[i]), options.movie);
+      series.look_at(timed([&] { return frames->at(times[i]); }), options.movie);
     }
   }
   const auto movie = options.movie.open(series);
   ProgressBar bar("animate", options.printing.quiet);
   for (std::size_t i = 0; i < times.size(); ++i) {
     bar.show(static_cast<double>(i) / static_cast<double>(times.size()));
-    Mesh mesh = slice(times[i]);
+    Mesh mesh(dimension, dimension - 1);
+    std::optional<Mesh> end;
+    if (options.movie.morphs && i + 1 < times.size()) {
+      auto moving = timed([&] { return frames->moving(times[i], times[i + 1]); });
+      mesh = std::move(moving.start);
+      end = std::move(moving.end);
+    } else {
+      mesh = timed([&] { return frames->at(times[i]); });
+    }
     outcome.vertices += mesh.vertex_count();
     outcome.simplices += mesh.simplex_count();
     const Stopwatch writing;
-    movie->add(std::move(mesh), i);
+    movie->add(std::move(mesh), std::move(end), i);
     outcome.write_seconds += writing.seconds();
   }
   const Stopwatch writing;
@@ -264,6 +272,9 @@ Command animate_command(CLI::App& program) {
          "hyperiso animate examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 --frames 41 -o water.mp4"},
         {"for a web page or a presentation, with frames where drops part and merge",
          "hyperiso animate examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 --frames 41 --events -o "
+         "water.glb"},
+        {"the same, moving evenly between its frames",
+         "hyperiso animate examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 --frames 121 --morph -o "
          "water.glb"},
         {"a node and a colour for each track of a folder that track wrote",
          "hyperiso track examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 --steps 16: -o water && "

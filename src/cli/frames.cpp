@@ -84,14 +84,22 @@ class FieldFrames final : public Frames {
   double read_seconds() const override { return steps_->read_seconds(); }
 
   Mesh at(double time) override {
-    const FieldInfo& info = steps_->info();
-    const SampleRange around = take(samples_around(axes().back(), time));
-    const bool at_step = around.end - around.begin == 1; // then to the bit
-    const double on_axis =
-        at_step ? info.axes.back().coordinate(around.begin) : (time - world_time_.offset) / world_time_.scale;
+    const double on_axis = on_axis_at(time);
     Mesh mesh = take(slicer_.slice(Hyperplane<D>::at(D - 1, on_axis)));
-    if (info.world) transform(mesh, at_coordinate(*info.world, D - 1, on_axis));
+    if (world()) transform(mesh, at_coordinate(*world(), D - 1, on_axis));
     return mesh;
+  }
+  MovingFrame moving(double time, double until) override {
+    const double on_axis = on_axis_at(time);
+    auto slice = take(slicer_.moving_slice(on_axis, on_axis_at(until)));
+    MovingFrame frame{std::move(slice.start), std::move(slice.end)};
+    if (!world()) return frame;
+    for (std::size_t row = 0; row + 1 < D; ++row)
+      if (world()->linear[row * D + D - 1] != 0)
+        fail_usage("--morph: the field's map to the world moves space with time; what stops within a frame "
+                   "would go on");
+    for (Mesh* mesh : {&frame.start, &frame.end}) transform(*mesh, at_coordinate(*world(), D - 1, on_axis));
+    return frame;
   }
 
   std::vector<double> events() override {
@@ -104,6 +112,13 @@ class FieldFrames final : public Frames {
   }
 
  private:
+  const std::optional<Affine>& world() const { return steps_->info().world; }
+  double on_axis_at(double time) const {
+    const SampleRange around = take(samples_around(axes().back(), time));
+    const bool at_step = around.end - around.begin == 1; // then to the bit
+    return at_step ? steps_->info().axes.back().coordinate(around.begin)
+                   : (time - world_time_.offset) / world_time_.scale;
+  }
   FieldSliceOptions options_of(const ExtractOptions& extraction, bool normals) const {
     FieldSliceOptions options;
     static_cast<ExtractOptions&>(options) = extraction;
@@ -150,6 +165,10 @@ class MeshFrames final : public Frames {
   double read_seconds() const override { return read_seconds_; }
   Mesh at(double time) override {
     return take(index_.slice(mesh_, Hyperplane<D>::at(D - 1, time), {.precision = precision_}));
+  }
+  MovingFrame moving(double time, double until) override {
+    auto slice = take(moving_slice(mesh_, time, until, precision_));
+    return {std::move(slice.start), std::move(slice.end)};
   }
   std::vector<double> events() override {
     if (events_) return *events_;

@@ -9,6 +9,11 @@
 
 namespace hyperiso::cli {
 
+// A frame that moves: the same mesh with the vertices where they are first and last.
+struct MovingFrame {
+  Mesh start, end;
+};
+
 // What is shown: the surface of a field or of a mesh file through its last axis.
 class Frames {
  public:
@@ -17,6 +22,7 @@ class Frames {
   virtual std::pair<double, double> times() const = 0; // the first and the last there are
   virtual void check(double time) const = 0;           // fails for a moment that there is no surface of
   virtual Mesh at(double time) = 0;                    // cheapest in the order of time
+  virtual MovingFrame moving(double time, double until) = 0; // until: later; see moving_slice
   virtual double read_seconds() const = 0;
   // The times at which components are born, die, merge, split or change otherwise. Fails for a mesh.
   virtual std::vector<double> events() = 0;

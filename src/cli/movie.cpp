@@ -73,7 +73,7 @@ class FileMovie final : public Movie {
   FileMovie(const MovieOptions& options, const Series& series, bool has_index)
       : options_(options), series_(series), has_index_(has_index) {}
 
-  void add(Mesh frame, std::size_t number) override {
+  void add(Mesh frame, std::optional<Mesh> /*end*/, std::size_t number) override {
     const std::string path =
         has_index_ ? with_suffix(std::filesystem::path(options_.path).replace_extension("vtp").string(),
                                  fmt::format("{:04}", number))
@@ -104,9 +104,9 @@ class GltfMovie final : public Movie {
   GltfMovie(const MovieOptions& options, const Series& series, const GlbOptions& how)
       : options_(options), series_(series), movie_(how), frames_per_second_(how.frames_per_second) {}
 
-  void add(Mesh frame, std::size_t number) override {
+  void add(Mesh frame, std::optional<Mesh> end, std::size_t number) override {
     if (!options_.colour_by().empty()) colour(frame, options_.colour_by(), series_.axes, series_.range);
-    take(movie_.add(frame, series_.times[number], seconds_at(number)));
+    take(movie_.add(frame, series_.times[number], seconds_at(number), end ? &*end : nullptr));
   }
   void finish() override { take(movie_.write(options_.path)); }
 
@@ -133,7 +133,7 @@ class DrawnMovie final : public Movie {
       : options_(options), series_(series), drawing_(std::move(drawing)), labels_(labels_of(series)),
         film_(std::move(film)) {}
 
-  void add(Mesh frame, std::size_t number) override {
+  void add(Mesh frame, std::optional<Mesh> /*end*/, std::size_t number) override {
     if (!options_.colour_by().empty()) colour(frame, options_.colour_by(), series_.axes, series_.range);
     const Image image = take(render(frame, labels_[number], drawing_));
     if (film_)
@@ -196,7 +196,13 @@ void MovieOptions::add_to(CLI::App& app, const PointDataOptions& data) {
       ->default_str("-60,25")
       ->group(group);
   app.add_flag("--quantise,--quantize", quantised,
-               ".glb: positions in 65536 steps, half the size (KHR_mesh_quantization)")
+               ".glb: positions in 65536 steps, 32768 with --morph: half the size (KHR_mesh_quantization)")
+      ->group(group);
+  app.add_flag(
+         "--morph", morphs,
+         ".glb: each frame moves on until the next one is shown, by a morph target: its vertices slide "
+         "along the edges of the surface in space and time, to the end of the edge at most. At least twice "
+         "the size")
       ->group(group);
 }
 
@@ -262,6 +268,7 @@ void MovieOptions::check() const {
   only(!size.empty(), is_drawn(), "--size", "films and pictures");
   only(!view.empty(), is_drawn(), "--view", "films and pictures");
   only(quantised, to == Kind::glb, "--quantise", ".glb");
+  only(morphs, to == Kind::glb, "--morph", ".glb");
   if (!data_->colour_range.empty() && colour_by().empty())
     fail_usage("--colour-range: there is no --colour-by");
   (void)data_->range();

@@ -30,14 +30,15 @@ struct Series {
 class Movie {
  public:
   virtual ~Movie() = default;
-  virtual void add(Mesh frame, std::size_t number) = 0;
+  // `end`: where the frame moves until the next one, if it does.
+  virtual void add(Mesh frame, std::optional<Mesh> end, std::size_t number) = 0;
   virtual void finish() = 0; // the files take their places
 };
 
 // -o and what belongs to some of its suffixes
 struct MovieOptions {
   std::string path, fps, size, view;
-  bool quantised = false;
+  bool quantised = false, morphs = false;
 
   void add_to(CLI::App& app, const PointDataOptions& data);
   // Fails for what cannot be, before anything is read.

@@ -9,12 +9,14 @@
 
 #include <algorithm>
 #include <array>
+#include <climits>
 #include <cmath>
 #include <cstring>
-#include <limits>
+#include <functional>
 #include <map>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 namespace hyperiso {
 
@@ -28,15 +30,16 @@ struct GlbMovie::Frame {
   double time = 0;
   float seconds = 0;
   int corners_per_simplex = 3;
-  std::vector<float> positions, normals; // three numbers for each vertex, or none
-  std::vector<std::uint16_t> colours;    // four, of linear light
+  std::vector<float> positions, normals;         // three numbers for each vertex, or none
+  std::vector<float> end_positions, end_normals; // where it moves; none: it does not
+  std::vector<std::uint16_t> colours;            // four, of linear light
   std::vector<Part> parts;
 };
 
 namespace {
 
 constexpr int mode_lines = 1, mode_triangles = 4;
-constexpr int type_byte = 5120, type_u16 = 5123, type_u32 = 5125, type_float = 5126;
+constexpr int type_byte = 5120, type_i16 = 5122, type_u16 = 5123, type_u32 = 5125, type_float = 5126;
 constexpr int target_vertices = 34962, target_corners = 34963;
 
 const Attribute* attribute_of(const Mesh& mesh, const char* name, Attribute::Location location,
@@ -52,13 +55,21 @@ double value_of(const Attribute& attribute, std::size_t place) {
 }
 
 // Positions in R^2 get z = 0.
-std::vector<float> in_space(const Mesh& mesh, const auto& coordinate) {
+std::vector<float> in_space(const Mesh& mesh) {
   const auto D = static_cast<std::size_t>(mesh.dimension);
   std::vector<float> numbers(3 * mesh.vertex_count());
   for (std::size_t vertex = 0; vertex < mesh.vertex_count(); ++vertex)
     for (std::size_t k = 0; k < D; ++k)
-      numbers[3 * vertex + k] = static_cast<float>(coordinate(vertex * D + k));
+      numbers[3 * vertex + k] = static_cast<float>(mesh.positions[vertex * D + k]);
   return numbers;
+}
+
+// For triangles without extent at the start or at the end.
+Mesh halfway(const Mesh& start, const Mesh& end) {
+  Mesh mesh = start;
+  for (std::size_t place = 0; place < mesh.positions.size(); ++place)
+    mesh.positions.set(place, (start.positions[place] + end.positions[place]) / 2);
+  return mesh;
 }
 
 // glTF's colours are linear, ours sRGB.
@@ -88,13 +99,17 @@ GlbMovie::GlbMovie(GlbOptions options) : options_(std::move(options)) {}
 GlbMovie::GlbMovie(GlbMovie&&) noexcept = default;
 GlbMovie::~GlbMovie() = default;
 
-Status GlbMovie::add(const Mesh& mesh, double time, double seconds) {
+Status GlbMovie::add(const Mesh& mesh, double time, double seconds, const Mesh* end) {
   const bool triangles = mesh.dimension == 3 && mesh.simplex_dimension == 2;
   if (!triangles && !(mesh.simplex_dimension == 1 && (mesh.dimension == 2 || mesh.dimension == 3)))
     return Error{
         Code::invalid_argument,
         text("a frame of a .glb is made of triangles in 3 dimensions or of segments in 2 or 3, not of ",
              mesh.simplex_dimension, "-simplices in ", mesh.dimension)};
+  if (end && (end->dimension != mesh.dimension || end->vertex_count() != mesh.vertex_count()))
+    return Error{Code::invalid_argument,
+                 text("a frame of ", mesh.vertex_count(), " vertices in ", mesh.dimension,
+                      " dimensions does not move to ", end->vertex_count(), " in ", end->dimension)};
   if (frames_.empty() ? seconds != 0 : !(seconds > before_))
     return Error{Code::invalid_argument, text("frame ", frames_.size(), " is to be shown at ", seconds,
                                               " seconds; the first is at 0, the others ascend")};
@@ -109,8 +124,14 @@ Status GlbMovie::add(const Mesh& mesh, double time, double seconds) {
     if (!frames_.empty() && frame.seconds <= frames_.back().seconds)
       frame.seconds = std::nextafter(frames_.back().seconds, HUGE_VALF);
     frame.corners_per_simplex = mesh.simplex_dimension + 1;
-    frame.positions = in_space(mesh, [&](std::size_t place) { return mesh.positions[place]; });
-    if (triangles) frame.normals = vertex_normals(mesh);
+    frame.positions = in_space(mesh);
+    if (end) frame.end_positions = in_space(*end);
+    if (triangles && end && !attribute_of(mesh, normal_attribute, Attribute::Location::vertex, 3)) {
+      frame.normals = vertex_normals(halfway(mesh, *end));
+    } else if (triangles) {
+      frame.normals = vertex_normals(mesh);
+      if (end) frame.end_normals = vertex_normals(*end);
+    }
     frame.colours = colours_of(mesh);
     const auto* tracks = attribute_of(mesh, "track_id", Attribute::Location::simplex, 1);
     const auto corners = static_cast<std::size_t>(frame.corners_per_simplex);
@@ -183,11 +204,14 @@ class GlbWriter {
   void find_box() {
     std::array<float, 3> high;
     low_.fill(HUGE_VALF), high.fill(-HUGE_VALF);
-    for (const auto& frame : movie_.frames_)
-      for (std::size_t place = 0; place < frame.positions.size(); ++place) {
-        low_[place % 3] = std::min(low_[place % 3], frame.positions[place]);
-        high[place % 3] = std::max(high[place % 3], frame.positions[place]);
-      }
+    for (const auto& frame : movie_.frames_) {
+      for (const auto* positions : {&frame.positions, &frame.end_positions})
+        for (std::size_t place = 0; place < positions->size(); ++place) {
+          low_[place % 3] = std::min(low_[place % 3], (*positions)[place]);
+          high[place % 3] = std::max(high[place % 3], (*positions)[place]);
+        }
+      if (!frame.end_positions.empty()) last_step_ = INT16_MAX; // differences of steps are signed
+    }
     double extent = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       if (!(low_[k] <= high[k]))
@@ -195,7 +219,7 @@ class GlbWriter {
       else
         extent = std::max(extent, static_cast<double>(high[k]) - low_[k]);
     }
-    if (extent > 0) step_ = extent / 65535;
+    if (extent > 0) step_ = extent / last_step_;
   }
 
   // Node 0 turns the axes, its children are the frames; quantised, a node in between gives back the
@@ -214,6 +238,7 @@ class GlbWriter {
       Json node{{"name", text("frame ", frame)}, {"extras", {{"time", movie_.frames_[frame].time}}}};
       if (frame > 0) node["scale"] = {0, 0, 0};
       frame_nodes_.push_back(add_child(above, std::move(node)));
+      mesh_nodes_.emplace_back();
       add_parts(movie_.frames_[frame], frame_nodes_.back());
     }
   }
@@ -227,20 +252,28 @@ class GlbWriter {
     if (!frame.colours.empty())
       attributes["COLOR_0"] =
           add_accessor(frame.colours, 4, type_u16, {{"normalized", true}}, target_vertices, 8);
+    Json target;
+    if (!frame.end_positions.empty()) {
+      target["POSITION"] = add_ways(frame.positions, frame.end_positions);
+      if (!frame.end_normals.empty()) target["NORMAL"] = add_turns(frame.normals, frame.end_normals);
+    }
     const bool divided = frame.parts.size() > 1 || frame.parts[0].track >= 0;
     for (const auto& part : frame.parts) {
       Json primitive{{"attributes", attributes},
                      {"indices", add_corners(part.corners, frame.positions.size() / 3)},
                      {"material", material_of(part.track, !frame.colours.empty())},
                      {"mode", frame.corners_per_simplex == 2 ? mode_lines : mode_triangles}};
+      if (!target.is_null()) primitive["targets"] = Json::array({target});
       Json mesh{{"primitives", Json::array({primitive})}};
+      if (!target.is_null()) mesh["weights"] = {0}; // VTK 9.1 fails without
       json_["meshes"].push_back(std::move(mesh));
       const std::size_t number = json_["meshes"].size() - 1;
       if (divided) {
         const std::string name = part.track >= 0 ? text("track ", part.track) : "no track";
-        add_child(node, {{"name", name}, {"mesh", number}});
+        mesh_nodes_.back().push_back(add_child(node, {{"name", name}, {"mesh", number}}));
       } else {
         nodes()[node]["mesh"] = number;
+        mesh_nodes_.back().push_back(node);
       }
     }
   }
@@ -261,11 +294,12 @@ class GlbWriter {
     return known->second;
   }
 
-  // Frame i is there from time i to time i + 1, in frames per second; the first shows where nothing is
-  // played.
+  // Frame i is there from time i to time i + 1, in frames per second, and moves in between; the first shows
+  // where nothing is played.
   void add_animation() {
     const std::size_t count = frame_nodes_.size();
-    if (count < 2) return;
+    const auto moves = [](const auto& frame) { return !frame.end_positions.empty(); };
+    if (count < 2 && !moves(movie_.frames_[0])) return;
     Json samplers = Json::array(), channels = Json::array();
     const auto add = [&](std::size_t node, const char* path, const char* interpolation, std::size_t times,
                          std::size_t values) {
@@ -278,6 +312,7 @@ class GlbWriter {
       return add_accessor(numbers, 3, type_float);
     };
     const std::size_t until = scales({1, 0}), during = scales({0, 1, 0}), from = scales({0, 1, 1});
+    std::optional<std::size_t> from_start_to_end;
     const auto seconds = [&](std::size_t frame) {
       return frame < count
                  ? movie_.frames_[frame].seconds
@@ -291,6 +326,11 @@ class GlbWriter {
           frame == 0          ? until
           : frame + 1 < count ? during
                               : from);
+      if (!moves(movie_.frames_[frame])) continue;
+      if (!from_start_to_end) from_start_to_end = add_accessor(std::vector<float>{0, 1}, 1, type_float);
+      const std::size_t shown = add_times({seconds(frame), seconds(frame + 1)});
+      for (const std::size_t node : mesh_nodes_[frame])
+        add(node, "weights", "LINEAR", shown, *from_start_to_end);
     }
     json_["animations"] = Json::array({{{"name", "time"}, {"samplers", samplers}, {"channels", channels}}});
   }
@@ -301,27 +341,63 @@ class GlbWriter {
 
   std::size_t add_positions(const std::vector<float>& positions) {
     if (!options_.quantised) return add_floats(positions);
-    std::vector<std::uint16_t> steps; // padded to four
-    steps.reserve(positions.size() / 3 * 4);
+    return add_steps<std::uint16_t>(positions.size(), type_u16,
+                                    [&](std::size_t place) { return step_of(positions, place); });
+  }
+  // From the ones to the others, as morph targets are given.
+  std::size_t add_ways(const std::vector<float>& starts, const std::vector<float>& ends) {
+    if (!options_.quantised) return add_floats(differences(starts, ends));
+    return add_steps<std::int16_t>(starts.size(), type_i16, [&](std::size_t place) {
+      return step_of(ends, place) - step_of(starts, place);
+    });
+  }
+
+  static std::vector<float> differences(const std::vector<float>& starts, const std::vector<float>& ends) {
+    std::vector<float> result(starts.size());
+    std::ranges::transform(ends, starts, result.begin(), std::minus());
+    return result;
+  }
+  int step_of(const std::vector<float>& positions, std::size_t place) const {
+    const double share = (static_cast<double>(positions[place]) - low_[place % 3]) / step_;
+    return static_cast<int>(std::clamp<long>(std::lround(share), 0, last_step_));
+  }
+  template <class Step>
+  std::size_t add_steps(std::size_t count, int type, const auto& step_at) {
+    std::vector<Step> steps; // padded to four
+    steps.reserve(count / 3 * 4);
     std::array<int, 3> low, high;
-    low.fill(65535), high.fill(0);
-    for (std::size_t place = 0; place < positions.size(); ++place) {
-      const double share = (static_cast<double>(positions[place]) - low_[place % 3]) / step_;
-      const int step = static_cast<int>(std::clamp(std::lround(share), 0L, 65535L));
+    low.fill(INT_MAX), high.fill(INT_MIN);
+    for (std::size_t place = 0; place < count; ++place) {
+      const int step = step_at(place);
       low[place % 3] = std::min(low[place % 3], step);
       high[place % 3] = std::max(high[place % 3], step);
-      steps.push_back(static_cast<std::uint16_t>(step));
+      steps.push_back(static_cast<Step>(step));
       if (place % 3 == 2) steps.push_back(0);
     }
-    return add_accessor(steps, 3, type_u16, {{"min", low}, {"max", high}}, target_vertices, 8);
+    return add_accessor(steps, 3, type, {{"min", low}, {"max", high}}, target_vertices, 8);
   }
 
   std::size_t add_normals(const std::vector<float>& normals) {
     if (!options_.quantised) return add_accessor(normals, 3, type_float, {}, target_vertices, 12);
+    return add_bytes(normals);
+  }
+  // From the ones to the others. Bytes hold turns of up to about 60 degrees; of one that is larger they hold
+  // a part.
+  std::size_t add_turns(const std::vector<float>& starts, const std::vector<float>& ends) {
+    std::vector<float> turns = differences(starts, ends);
+    if (!options_.quantised) return add_accessor(turns, 3, type_float, {}, target_vertices, 12);
+    for (std::size_t place = 0; place < turns.size(); place += 3) {
+      float most = 1;
+      for (std::size_t k = 0; k < 3; ++k) most = std::max(most, std::abs(turns[place + k]));
+      for (std::size_t k = 0; k < 3; ++k) turns[place + k] /= most;
+    }
+    return add_bytes(turns);
+  }
+  std::size_t add_bytes(const std::vector<float>& shares) {
     std::vector<std::int8_t> steps; // padded to four
-    steps.reserve(normals.size() / 3 * 4);
-    for (std::size_t place = 0; place < normals.size(); ++place) {
-      steps.push_back(static_cast<std::int8_t>(std::lround(normals[place] * 127)));
+    steps.reserve(shares.size() / 3 * 4);
+    for (std::size_t place = 0; place < shares.size(); ++place) {
+      steps.push_back(static_cast<std::int8_t>(std::lround(shares[place] * 127)));
       if (place % 3 == 2) steps.push_back(0);
     }
     return add_accessor(steps, 3, type_byte, {{"normalized", true}}, target_vertices, 4);
@@ -381,9 +457,11 @@ class GlbWriter {
   Json json_;
   std::vector<char> bytes_;
   std::vector<std::size_t> frame_nodes_;
+  std::vector<std::vector<std::size_t>> mesh_nodes_; // of each frame: those with its meshes
   std::map<std::int64_t, std::size_t> materials_;
   std::array<float, 3> low_{}; // quantised
   double step_ = 1;
+  int last_step_ = UINT16_MAX;
 };
 
 Status GlbMovie::write(const std::filesystem::path& path, FileGroup* group) const {

@@ -49,6 +49,13 @@ class CutPlane {
   std::array<double, D - 1> coordinates(const std::array<double, D>& point) const {
     return across_ ? without(point, *across_) : frame_.coordinates(point);
   }
+  // Across an axis: where it is, and the plane next to it that points on this one lie before.
+  double value() const { return plane_.offset; }
+  CutPlane just_after() const {
+    CutPlane after = *this;
+    after.plane_.offset = std::nextafter(value(), HUGE_VAL);
+    return after;
+  }
   bool positive() const { return frame_.positive; }
   const auto& directions() const { return frame_.directions; }
 

@@ -83,6 +83,25 @@ class FieldSlicer<D, K>::Work {
     }
   }
 
+  Result<MovingSlice<D>> moving_slice(double start, double end) requires(K == D - 1) {
+    if (const Status valid = check_levels(); !valid) return valid.error();
+    const Axis& last = axes().back();
+    const auto around = samples_around(last, start);
+    if (!around) return around.error();
+    std::int64_t begin = around->begin;
+    if (around->end - begin == 1 && last.increasing() != (start < end)) --begin;
+    if (begin < 0 || begin + 2 > last.count)
+      return Error{Code::outside_domain,
+                   text("nothing moves from ", start, " to ", end, ": the field ends at ", start)};
+    try {
+      if (!keeps(begin))
+        if (const Status kept = keep(begin); !kept) return kept.error();
+      return hyperiso::moving_slice(kept_->surface, start, end, options_.precision);
+    } catch (const std::bad_alloc&) {
+      return Error{Code::out_of_memory, "not enough memory for the slice"};
+    }
+  }
+
  private:
   Status check_levels() const {
     if (codimension == 1 && levels_.size() != 1)
@@ -165,22 +184,27 @@ class FieldSlicer<D, K>::Work {
     return mesh_of<D - 1>(layer->field, *layer, options);
   }
 
-  // Between two samples of the last axis. Their surface is kept for the next cut, from the second one on with
-  // an index.
+  // Between two samples of the last axis; from the second time on with an index.
   Result<SimplexMesh<D - 1, K - 1>> slice_between(SampleRange around, const Hyperplane<D>& plane) {
-    if (!kept_ || kept_->begin != around.begin) {
-      kept_.reset();
-      const auto samples = read(around.begin, around.end);
-      if (!samples) return samples.error();
-      ExtractOptions options = options_;
-      options.keep_edges = true;
-      auto surface = mesh_of<D>(slab_of(*samples, around.begin, axes()), *samples, options);
-      if (!surface) return surface.error();
-      kept_.emplace(Kept{around.begin, *std::move(surface), {}});
+    if (!keeps(around.begin)) {
+      if (const Status kept = keep(around.begin); !kept) return kept.error();
       return hyperiso::slice(kept_->surface, plane, slice_options());
     }
     if (!kept_->index) kept_->index.emplace(kept_->surface);
     return kept_->index->slice(kept_->surface, plane, slice_options());
+  }
+  bool keeps(std::int64_t begin) const { return kept_ && kept_->begin == begin; }
+  // Holds the surface from the sample `begin` of the last axis to the next, for the cuts to come.
+  Status keep(std::int64_t begin) {
+    kept_.reset();
+    const auto samples = read(begin, begin + 2);
+    if (!samples) return samples.error();
+    ExtractOptions options = options_;
+    options.keep_edges = true;
+    auto surface = mesh_of<D>(slab_of(*samples, begin, axes()), *samples, options);
+    if (!surface) return surface.error();
+    kept_.emplace(Kept{begin, *std::move(surface), {}});
+    return {};
   }
 
   // Slab after slab; `around`: the samples of the axis that the plane lies across, if there is one.
@@ -286,6 +310,11 @@ FieldSlicer<D, K>::FieldSlicer(FieldSlicer&&) noexcept = default;
 template <int D, int K>
 Result<SimplexMesh<D - 1, K - 1>> FieldSlicer<D, K>::slice(const Hyperplane<D>& plane) {
   return work_->slice(plane);
+}
+
+template <int D, int K>
+Result<MovingSlice<D>> FieldSlicer<D, K>::moving_slice(double start, double end) requires(K == D - 1) {
+  return work_->moving_slice(start, end);
 }
 
 template class FieldSlicer<3>;

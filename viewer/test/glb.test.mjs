@@ -44,6 +44,7 @@ async function assertValid(bytes) {
 
 const json = (bytes) => JSON.parse(bytes.subarray(20, 20 + bytes.readUInt32LE(12)).toString());
 const shown = (bytes, times) => page.evaluate(([data, at]) => window.glb.shown(data, at), [bytes.toString("base64"), times]);
+const points = (bytes, time) => page.evaluate(([data, at]) => window.glb.points(data, at), [bytes.toString("base64"), time]);
 const near = (a, b, tolerance) => assert.ok(Math.abs(a - b) <= tolerance, `${a} is not ${b}`);
 
 describe("a film of frames", () => {
@@ -106,6 +107,67 @@ describe("a film of frames", () => {
       near(a.low[k], b.low[k], 1e-4);
       near(a.high[k], b.high[k], 1e-4);
     }
+  });
+});
+
+describe("frames that move", () => {
+  const surface = ["torus.nrrd", "--iso", "0.5"];
+  const distance = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+  const nearest = (point, others) => Math.min(...others.map((other) => distance(point, other)));
+  let bytes;
+  before(() => { bytes = animate("morph.glb", ...surface, "--frames", "9", "--morph"); });
+
+  test("are valid glTF, with a target that moves evenly for every frame but the last", async () => {
+    const info = await assertValid(bytes);
+    assert.equal(info.hasMorphTargets, true);
+    const { animations: [{ channels, samplers }], meshes } = json(bytes);
+    assert.equal(meshes.filter(({ primitives: [{ targets }] }) => targets?.length === 1 && "POSITION" in targets[0] && "NORMAL" in targets[0]).length, 8);
+    assert.equal(meshes.at(-1).primitives[0].targets, undefined);
+    const moving = channels.filter(({ target }) => target.path === "weights");
+    assert.equal(moving.length, 8);
+    for (const { sampler } of moving) assert.equal(samplers[sampler].interpolation, "LINEAR");
+  });
+
+  test("one is shown at every moment, by its share of the way", async () => {
+    const times = [];
+    for (let i = 0; i < 9; ++i) times.push((i + 0.02) / 10, (i + 0.5) / 10, (i + 0.98) / 10);
+    const seen = await shown(bytes, times);
+    seen.forEach((list, k) => {
+      const frame = Math.floor(k / 3);
+      assert.deepEqual(list.map(({ name }) => name), [`frame_${frame}`]);
+      if (frame < 8) near(list[0].weights[0], [0.02, 0.5, 0.98][k % 3], 1e-3);
+    });
+  });
+
+  test("vertices are on the slice of the moment, but for those that have come to the end of their edge", async () => {
+    const short = ["--times", "0.3,0.302", "--morph"];
+    const exact = await points(animate("exact.glb", ...surface, "--times", "0.301"), 0);
+    for (const more of [[], ["--quantise"]]) {
+      const moving = animate("short.glb", ...surface, ...short, ...more);
+      await assertValid(moving);
+      const tolerance = more.length ? 1e-4 : 1e-6;
+      const there = (list) => list.filter((point) => nearest(point, exact) < tolerance).length / list.length;
+      const start = there(await points(moving, 0)), halfway = there(await points(moving, 0.05));
+      assert.ok(halfway > 0.9 && start < 0.5, `${halfway} of the vertices are there halfway, ${start} at the start`);
+    }
+  });
+
+  test("start where the frame of a stored step is", async () => {
+    const still = await points(animate("still.glb", ...surface, "--times", "0.5"), 0);
+    for (const point of await points(bytes, 0.2 + 1e-6)) near(nearest(point, still), 0, 1e-4);
+  });
+
+  test("with tracks, events, and quantised; without normals; in the plane", async () => {
+    const tracks = animate("tracks.glb", "blobs.nrrd", "--iso", "0.5", "--frames", "5", "--events", "--tracks", "--morph", "--quantise");
+    await assertValid(tracks);
+    const [[frame]] = await shown(tracks, [0.28]);
+    assert.ok(frame.parts.length > 1 && frame.weights.length === frame.parts.length);
+    assert.ok(frame.weights[0] > 0 && frame.weights.every((weight) => weight === frame.weights[0]));
+    hyperiso("extract", "blobs.nrrd", "--iso", "0.5", "-o", "surface.vtu");
+    await assertValid(animate("mesh.glb", "surface.vtu", "--frames", "5", "--morph"));
+    await assertValid(animate("disc.glb", "disc.nrrd", "--iso", "0.5", "--frames", "5", "--morph"));
+    await assertValid(animate("none.glb", "torus.nrrd", "--iso", "7", "--frames", "3", "--quiet", "--morph"));
+    await assertValid(animate("single.glb", "torus.nrrd", "--iso", "0.5", "--frames", "1", "--morph"));
   });
 });
 

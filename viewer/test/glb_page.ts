@@ -11,6 +11,21 @@ function bytesOf(base64: string): ArrayBuffer {
 const isDrawn = (object: Object3D) => object instanceof Mesh || object instanceof LineSegments || object instanceof Line;
 
 window.glb = {
+  /// The vertices drawn at `time`, in the world, as they are moved.
+  async points(base64: string, time: number) {
+    const gltf = await new GLTFLoader().parseAsync(bytesOf(base64), "");
+    const mixer = new AnimationMixer(gltf.scene);
+    for (const clip of gltf.animations) mixer.clipAction(clip).play();
+    mixer.setTime(time);
+    gltf.scene.updateMatrixWorld(true);
+    const points: number[][] = [];
+    gltf.scene.traverse((object) => {
+      if (!(object instanceof Mesh) || new Vector3().setFromMatrixScale(object.matrixWorld).length() === 0) return;
+      for (let vertex = 0; vertex < object.geometry.attributes["position"].count; ++vertex)
+        points.push(object.getVertexPosition(vertex, new Vector3()).applyMatrix4(object.matrixWorld).toArray());
+    });
+    return points;
+  },
   /// The frames shown at each of `times`, in seconds: their names, extras, bounds in the world, drawn parts.
   async shown(base64: string, times: number[]) {
     const gltf = await new GLTFLoader().parseAsync(bytesOf(base64), "");
