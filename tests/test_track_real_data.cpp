@@ -3,7 +3,9 @@
 #include "hyperiso/io.hpp"
 #include "hyperiso/measure.hpp"
 #include "hyperiso/slice.hpp"
+#include "hyperiso/track_files.hpp"
 #include "regions_of_samples.hpp"
+#include "temporary_folder.hpp"
 
 #include <filesystem>
 
@@ -137,17 +139,24 @@ void check_regions(const Field& data, double isovalue, Method method, std::int64
   if (method == Method::hull) compare_with_slices<4>(graph, field, {isovalue, above_all}, method, 8);
 }
 
-// Read step by step, the history is that of the field in memory.
+// Read step by step by several threads, the history is that of the field in memory, to the byte of each file.
 void compare_with_stream(FieldReader& reader, double isovalue) {
-  const auto whole = track_field(*reader.read(), isovalue);
-  const auto streamed = track(reader, isovalue);
+  TrackOptions options;
+  options.extraction.threads = 1;
+  const auto whole = track_field(*reader.read(), isovalue, options);
+  options.extraction.threads = 3;
+  const auto streamed = track(reader, isovalue, options);
   ASSERT_TRUE(streamed) << streamed.error().message;
-  EXPECT_EQ(signature(whole), signature(*streamed));
-  ASSERT_EQ(whole.features.size(), streamed->features.size());
-  for (std::size_t row = 0; row < whole.features.size(); ++row) {
-    EXPECT_EQ(whole.features[row].track, streamed->features[row].track);
-    EXPECT_EQ(whole.features[row].volume, streamed->features[row].volume);
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_tracking(whole, folder / "whole"));
+  ASSERT_TRUE(write_tracking(*streamed, folder / "streamed"));
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "whole")) {
+    const auto other = folder / "streamed" / entry.path().filename();
+    EXPECT_TRUE(content_of(entry.path()) == content_of(other)) << entry.path().filename();
+    ++files;
   }
+  EXPECT_GE(files, 12);
 }
 
 class WaterOfTheDamBreak : public ::testing::Test {
