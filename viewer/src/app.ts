@@ -1,5 +1,6 @@
 // What holds the page together: the state, and what follows from a change of it.
 import { rgb, type Rgb } from "./colours";
+import { meaningOf } from "./events";
 import { axisFrame, axisOf, dot, type Frame, reachOf, turnedTo } from "./frame";
 import { componentsOf, type Mesh } from "./mesh";
 import { type Metadata, samplesOf, type TrackEvent } from "./metadata";
@@ -207,8 +208,8 @@ export class App {
     this.moveTo(stops[Math.max(0, Math.min(stops.length - 1, at + count))]!);
   }
   stepEvent(direction: 1 | -1): void {
-    if (this.axis !== this.space.timeAxis) return;
-    const here = this.toPosition(this.state.offset);
+    // From another plane, the first or the last of all.
+    const here = this.axis === this.space.timeAxis ? this.toPosition(this.state.offset) : -direction * Infinity;
     const near = 1e-6 * (this.toPosition(this.reach) - this.toPosition(-this.reach));
     const next = direction > 0 ? this.events.find((event) => event.time > here + near)
       : this.events.findLast((event) => event.time < here - near);
@@ -216,7 +217,8 @@ export class App {
   }
   showEvent(event: TrackEvent): void {
     this.moveToTime(event.time);
-    this.view.marker = { point: this.picturePoint(event.position), text: `${event.type.replace("_", " ")}\n${this.positionText(this.space.timeAxis, event.time)}` };
+    const lines = [event.type, meaningOf(event.type), this.positionText(this.space.timeAxis, event.time)];
+    this.view.marker = { point: this.picturePoint(event.position), text: lines.filter(Boolean).join("\n") };
     this.view.request();
   }
   /// Where a place in space is in the picture.

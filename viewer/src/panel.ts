@@ -36,6 +36,17 @@ export function buildPanel(app: App): void {
   app.onMesh(() => buildAbout(app));
 }
 
+/// What the plane makes of the surface, in a line.
+function planeText(app: App): string {
+  const { axes, dimension, timeAxis } = app.space;
+  if (app.axis < 0) return dimension === 4 ? "A plane across several axes: it mixes space and time." : "A line on the surface, across several axes.";
+  const name = axes[app.axis]!.name;
+  if (app.axis === timeAxis) return "A moment. Play moves through time.";
+  if (app.metadata.levels && app.axis === dimension - 1) return "One isovalue. Play moves through them.";
+  const others = axes.filter((_, k) => k !== app.axis).map((axis) => axis.name);
+  return dimension === 4 ? `All of ${others.join(", ")} at one ${name}. Play moves through ${name}.` : `A line on the surface, at one ${name}.`;
+}
+
 function buildPresets(app: App): void {
   const presets = element("presets");
   const buttons: { axis: number; button: HTMLButtonElement }[] = [];
@@ -54,6 +65,7 @@ function buildPresets(app: App): void {
   app.onChange((_, changed) => {
     if (!changed.has("frame")) return;
     for (const { axis, button } of buttons) button.setAttribute("aria-pressed", String(axis === app.axis));
+    element("slice-hint").textContent = planeText(app);
   });
 }
 

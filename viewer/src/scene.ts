@@ -295,8 +295,11 @@ export class SceneView {
     labels.textBaseline = "middle";
     const width = Math.max(...lines.map((line) => labels.measureText(line).width)) + 20;
     const height = 17 * lines.length + 12;
-    const left = x + 12 + width > this.stage.clientWidth ? x - 12 - width : x + 12;
-    const top = Math.max(4, Math.min(y - height / 2, this.stage.clientHeight - height - 4));
+    // Beside the point, to the right or to the left, or below it where neither has room.
+    const { clientWidth, clientHeight } = this.stage;
+    const beside = [x + 12, x - 12 - width].find((one) => one >= 4 && one + width + 4 <= clientWidth);
+    const left = beside ?? Math.max(4, Math.min(x - width / 2, clientWidth - width - 4));
+    const top = Math.max(4, Math.min(beside === undefined ? y + 12 : y - height / 2, clientHeight - height - 4));
     labels.fillStyle = this.palette.background[0];
     labels.globalAlpha = 0.92;
     labels.beginPath();

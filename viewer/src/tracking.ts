@@ -1,13 +1,11 @@
 // The tracking graph under the scene: a lane for each track along the time line, a glyph for each event.
 import { type App, element } from "./app";
 import { labelColour } from "./colours";
+import { eventText, isMinor } from "./events";
 import type { Track, TrackEvent } from "./metadata";
 
-/// Events that leave the number of components as it is: there can be many.
-export const isMinor = (type: string): boolean => type === "genus" || type === "touch";
-
 const SVG = "http://www.w3.org/2000/svg";
-const LANE = 20, TOP = 14;
+const LANE = 20, TOP = 8;
 const MOST_NAMED = 16; // events that are named beside their glyph
 
 function svg<K extends keyof SVGElementTagNameMap>(name: K, attributes: Record<string, string | number>): SVGElementTagNameMap[K] {
@@ -43,7 +41,7 @@ function glyphOf(type: string): SVGElement {
   return svg("circle", { r: 4.5 });
 }
 
-/// What the glyphs mean, for the line under the lanes.
+/// What the glyphs mean, for the line above the lanes.
 const KEY: [name: string, types: string[]][] = [
   ["merge", ["merge"]],
   ["split", ["split"]],
@@ -51,6 +49,35 @@ const KEY: [name: string, types: string[]][] = [
   ["begin, end", ["birth", "death", "enter", "exit"]],
   ["change of topology", ["genus", "touch"]],
 ];
+
+const counted = (count: number, noun: string): string => `${count} ${noun}${count === 1 ? "" : "s"}`;
+
+/// The line above the lanes: what they are, what the glyphs mean, and buttons from event to event.
+function headOf(app: App, tracks: readonly Track[], events: readonly TrackEvent[]): HTMLElement {
+  const head = document.createElement("div");
+  head.className = "tracking-head";
+  const name = document.createElement("strong");
+  name.textContent = `${counted(tracks.length, "track")}, ${counted(events.length, "event")}`;
+  name.title = "Point at a track to see it in the picture; click an event to go there";
+  head.append(name);
+  const key = document.createElement("span");
+  key.className = "glyph-key";
+  for (const [meaning, types] of KEY)
+    if (events.some((event) => types.includes(event.type))) key.append(pictureOf(types[0]!), meaning);
+  head.append(key);
+  if (events.length === 0) return head;
+  const buttons = document.createElement("span");
+  buttons.className = "event-buttons";
+  for (const [direction, text, title] of [[-1, "‹ event", "Previous event ([)"], [1, "event ›", "Next event (])"]] as const) {
+    const button = document.createElement("button");
+    Object.assign(button, { type: "button", textContent: text, title, id: direction < 0 ? "event-back" : "event-forward" });
+    button.setAttribute("aria-label", title.replace(/ \(.*/, ""));
+    button.addEventListener("click", () => app.stepEvent(direction));
+    buttons.append(button);
+  }
+  head.append(buttons);
+  return head;
+}
 
 function pictureOf(type: string): SVGElement {
   const drawing = svg("svg", { viewBox: "-8 -8 16 16", "aria-hidden": "true" });
@@ -75,21 +102,17 @@ export function buildTracking(app: App): void {
   const height = TOP * 2 + LANE * (Math.max(...lanes.values()) + 1);
   const drawing = svg("svg", { height, role: "group", "aria-label": "Tracks and events through time" });
   const now = svg("line", { class: "now", y1: 0, y2: height });
-  const key = document.createElement("p");
-  key.className = "glyph-key";
-  for (const [name, types] of KEY)
-    if (events.some((event) => types.includes(event.type))) key.append(pictureOf(types[0]!), name);
-  if (key.childNodes.length) key.append(Object.assign(document.createElement("span"), { textContent: "Click one to go there." }));
+  const head = headOf(app, tracks, events);
   const stale = document.createElement("p");
   stale.className = "stale";
   const back = document.createElement("button");
   Object.assign(back, { type: "button", textContent: `Back to ${app.initial.isovalue}` });
   back.addEventListener("click", () => app.set({ isovalue: app.initial.isovalue }));
   stale.append(`Tracks and events are those of isovalue ${app.initial.isovalue}. `, back);
-  host.replaceChildren(drawing, key, stale);
+  host.replaceChildren(head, drawing, stale);
   const showStale = (): void => {
     stale.hidden = app.isOwnSurface;
-    key.style.visibility = app.isOwnSurface ? "" : "hidden";
+    head.style.visibility = app.isOwnSurface ? "" : "hidden";
     drawing.classList.toggle("dimmed", !app.isOwnSurface);
     drawing.toggleAttribute("inert", !app.isOwnSurface);
   };
@@ -167,7 +190,7 @@ export function buildTracking(app: App): void {
   const glyph = (event: TrackEvent, named: boolean): SVGElement => {
     const tracks = [...event.in, ...event.out].filter((id) => lanes.has(id));
     const at = tracks.length ? y(event.out.find((id) => lanes.has(id)) ?? tracks[0]!) : TOP;
-    const label = `${event.type} at ${app.positionText(app.space.timeAxis, event.time)}`;
+    const label = eventText(app, event);
     const group = svg("g", { class: isMinor(event.type) ? "glyph minor" : "glyph", transform: `translate(${x(event.time)} ${at})`, tabindex: 0, role: "button", "aria-label": label, "data-event": event.type });
     const title = svg("title", {});
     title.textContent = label;

@@ -1,7 +1,7 @@
 // Playing and scrubbing, the events on the time line, and the keys.
 import { type App, element } from "./app";
+import { eventText, isMinor } from "./events";
 import { readable } from "./space";
-import { isMinor } from "./tracking";
 
 const input = (id: string): HTMLInputElement => element<HTMLInputElement>(id);
 const select = (id: string): HTMLSelectElement => element<HTMLSelectElement>(id);
@@ -52,7 +52,7 @@ function showMarks(app: App, [low, high]: [number, number]): void {
     mark.className = isMinor(event.type) ? "mark minor" : "mark";
     mark.tabIndex = -1; // the keys [ and ] go through them
     mark.style.left = `${(100 * (event.time - low)) / (high - low || 1)}%`;
-    mark.title = `${event.type} at ${app.positionText(app.space.timeAxis, event.time)}`;
+    mark.title = eventText(app, event);
     mark.setAttribute("aria-label", mark.title);
     mark.addEventListener("click", () => app.showEvent(event));
     marks.append(mark);

@@ -1,8 +1,33 @@
-// Prints what a page costs: bytes per tetrahedron, time to open, time per frame when time is scrubbed.
+// Prints what a page costs: bytes per tetrahedron, time to open, time per frame when time is scrubbed, frames while
+// it plays.
 //
-//   node viewer/test/benchmark.mjs PAGE.html...        (make_viewer_pages FILE.html N makes one)
+//   node viewer/test/benchmark.mjs PAGE.html...        (hyperiso view, or make_viewer_pages FILE.html N, makes one)
 import { readFileSync, statSync } from "node:fs";
 import { openBrowser, openPage, ready } from "./browser.mjs";
+
+const PLAYED = 6; // seconds, of the 10 that a run takes
+
+// Plays from the first moment by the button: the frames drawn, and how far time went.
+async function play(page) {
+  await page.evaluate(() => {
+    const { hyperiso: app } = window;
+    app.acrossAxis(app.space.timeAxis);
+    const rendered = app.view.afterRender;
+    app.drawn = 0;
+    app.view.afterRender = (milliseconds) => {
+      rendered(milliseconds);
+      ++app.drawn;
+    };
+  });
+  await page.click("#play");
+  const begin = await page.evaluate(() => [window.hyperiso.drawn, window.hyperiso.time, performance.now()]);
+  await page.waitForTimeout(1000 * PLAYED);
+  const end = await page.evaluate(() => [window.hyperiso.drawn, window.hyperiso.time, performance.now()]);
+  await page.click("#play");
+  const reach = await page.evaluate(() => Math.abs(window.hyperiso.toPosition(window.hyperiso.reach) - window.hyperiso.toPosition(-window.hyperiso.reach)));
+  const [frames, time, milliseconds] = end.map((value, i) => value - begin[i]);
+  return { frames, seconds: milliseconds / 1000, share: time / reach };
+}
 
 const browser = await openBrowser();
 for (const file of process.argv.slice(2)) {
@@ -44,6 +69,7 @@ for (const file of process.argv.slice(2)) {
     }
     return { time, oblique, extract, simplices: mesh.simplexCount, card: (16 * mesh.vertexCount + 16 * mesh.simplexCount) / mesh.simplexCount };
   });
+  const played = await play(page);
   const { simplices } = result;
   console.log(`${file}: ${simplices.toLocaleString("en")} tetrahedra`);
   console.log(`  in the file        ${((statSync(file).size - viewer) / simplices).toFixed(2)} bytes per tetrahedron, and ${(viewer / 1e6).toFixed(2)} MB for the viewer`);
@@ -51,6 +77,7 @@ for (const file of process.argv.slice(2)) {
   console.log(`  opened in          ${opened.toFixed(1)} s`);
   console.log(`  scrubbing time     ${result.time.toFixed(0)} ms per frame`);
   console.log(`  oblique plane      ${result.oblique.toFixed(0)} ms per frame`);
+  console.log(`  playing            ${played.frames} frames in ${played.seconds.toFixed(1)} s, through ${(100 * played.share).toFixed(0)} % of time`);
   if (result.extract) console.log(`  another isovalue   ${result.extract.toFixed(0)} ms`);
   if (problems.length) console.log(problems);
   await close();

@@ -175,8 +175,12 @@ describe("the page of a surface in space and time", () => {
       assert.deepEqual(await page.evaluate(() => hyperiso.state.frame[3]), [0, 1, 2, 3].map((i) => Number(i === k)));
       assert.match(await page.textContent("#position"), new RegExp(`^${name} = .* ${name === "t" ? "s" : "mm"}`));
       assert.equal(await page.getAttribute(`#presets button:text-is("${name}")`, "aria-pressed"), "true");
+      const others = ["x", "y", "z", "t"].filter((one) => one !== name).join(", ");
+      assert.equal(await page.textContent("#slice-hint"),
+        name === "t" ? "A moment. Play moves through time." : `All of ${others} at one ${name}. Play moves through ${name}.`);
     }
     await page.click('#presets button:text-is("oblique")');
+    assert.match(await page.textContent("#slice-hint"), /mixes space and time/);
     assert.deepEqual(await page.evaluate(() => hyperiso.state.frame[3].map((x) => Number(x.toFixed(9)))), [0.5, 0.5, 0.5, 0.5]);
     await page.keyboard.press("2");
     assert.equal(await page.evaluate(() => hyperiso.axis), 1);
@@ -511,7 +515,8 @@ describe("the page of a tracking result", () => {
     assert.equal(await page.locator(".lane").count(), 2);
     assert.deepEqual(await page.locator(".glyph").allTextContents(), ["merge at t = 0.595 smerge"]);
     assert.equal(await page.locator(".mark").count(), 1);
-    assert.equal(await page.textContent(".glyph-key"), "mergeClick one to go there.");
+    assert.equal(await page.textContent(".tracking-head strong"), "2 tracks, 1 event");
+    assert.equal(await page.textContent(".glyph-key"), "merge");
     assert.equal(await state(page, "colour"), "track");
     assert.match(await page.textContent("#legend"), /2 tracks/);
     // A mark stands where the slider's handle is at that time.
@@ -548,12 +553,33 @@ describe("the page of a tracking result", () => {
     await page.keyboard.press("Home");
     await page.click(".mark");
     near(await position(page), MERGE, 1e-5);
+    await page.keyboard.press("Home");
+    await page.click("#event-back"); // there is none before
+    near(await position(page), 0, 1e-5);
+    await page.click("#event-forward");
+    near(await position(page), MERGE, 1e-5);
+    await page.keyboard.press("End");
+    await page.click("#event-back");
+    near(await position(page), MERGE, 1e-5);
+    await page.click('#presets button:text-is("x")'); // where no event has a place: the first of all
+    await page.click("#event-forward");
+    near(await position(page), MERGE, 1e-5);
+    assert.equal(await page.evaluate(() => hyperiso.axis), 3);
     await page.click('#presets button:text-is("x")');
     assert.equal(await page.locator(".mark").count(), 0);
     await page.focus('[data-event="merge"]');
     await page.keyboard.press("Enter");
     near(await position(page), MERGE, 1e-5);
     assert.equal(await page.evaluate(() => hyperiso.axis), 3);
+  });
+
+  test("says what a kind of event means where its name does not", async () => {
+    const texts = await page.evaluate(() => ["merge", "touch", "exit"].map((type) => {
+      hyperiso.showEvent({ ...hyperiso.events[0], type });
+      return hyperiso.view.marker.text;
+    }));
+    assert.deepEqual(texts, ["merge\nt = 0.595 s", "touch\na wall begins or ends to cut it\nt = 0.595 s",
+      "exit\nthrough a wall\nt = 0.595 s"]);
   });
 
   test("hovering a track highlights it", async () => {
@@ -617,6 +643,7 @@ describe("the page of an interval volume", () => {
   test("slides between the isovalues: balls of the radii that they have", async () => {
     const { page, problems, close } = await open("levels.html");
     assert.match(await page.textContent("#position"), /^isovalue = 0\.4\d* *level 1 of 2$/);
+    assert.equal(await page.textContent("#slice-hint"), "One isovalue. Play moves through them.");
     assert.equal(await page.textContent("#subtitle"), "isovalues 0.2 to 0.6");
     const first = await page.locator("#presets button").first().textContent();
     assert.equal(first, "isovalue");
@@ -718,6 +745,16 @@ describe("on a phone", () => {
         assert.ok(box && box.x >= 0 && box.x + box.width <= width, selector);
         assert.ok(box.height >= 28, selector);
       }
+      // What an event is said to be stands whole in the picture.
+      const edges = await page.evaluate(() => {
+        hyperiso.showEvent({ ...hyperiso.events[0], type: "touch" });
+        hyperiso.view.render();
+        const labels = document.getElementById("labels"), context = labels.getContext("2d");
+        const filled = (x) => context.getImageData(x, 0, 1, labels.height).data.filter((value, i) => i % 4 === 3 && value > 200).length;
+        return [filled(0), filled(labels.width - 1), filled(labels.width >> 1)];
+      });
+      assert.deepEqual(edges.slice(0, 2), [0, 0]);
+      assert.ok(edges[2] > 30, edges.join());
       assert.ok(await page.isHidden("#panel"));
       await page.tap("#panel-button");
       await page.waitForSelector("#panel", { state: "visible" });
