@@ -34,6 +34,7 @@ class Readme(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             (Path(folder) / "examples").symlink_to(ROOT / "examples")
             for command in commands:
+                command = command.replace(".mp4", ".mp4 --size 320x180")  # seconds of drawing
                 run = subprocess.run(command, shell=True, cwd=folder, env={**os.environ, "PATH": path},
                                      capture_output=True, text=True, check=False)
                 self.assertEqual(run.returncode, 0, f"{command}\n{run.stderr}")
