@@ -169,6 +169,7 @@ class Engine {
                    options_.keep_edges,
                    first_row_,
                    ranges_,
+                   engine_options_.given_masks,
                    &memory_.numbers,
                    plan_.units[unit],
                    &window,

@@ -40,11 +40,12 @@
 
 namespace hyperiso {
 
-// What tests choose, and nobody else.
+// What tests choose, and nobody else; and masks that tracking has.
 struct EngineOptions {
   Instructions instructions = best_instructions();
   bool wide_indices = false;     // 64-bit vertex numbers although 32 bits would do
   std::int64_t unit_samples = 0; // about how many samples a unit has; 0: as fits the caches and the threads
+  GivenMasks given_masks = {};   // of the whole field
 };
 
 // Extracts into `mesh`, in the memory it has if that is enough. `mesh.positions`, `simplices`, `edges` and

@@ -130,6 +130,13 @@ struct NotedRanges {
   bool known = false; // found
 };
 
+// Masks of all rows of a field, one after the other, and of each what MaskWindow::uniform says, where
+// somebody has them already. None if null. The field has no NaN then.
+struct GivenMasks {
+  const std::uint64_t* masks = nullptr;
+  const std::uint8_t* uniform = nullptr;
+};
+
 // What a worker needs while it scans, kept from unit to unit.
 struct ScanMemory {
   Array<std::uint64_t> edges_exist, cells_exist; // of a row
@@ -195,6 +202,7 @@ struct ScanJob {
   bool wide_positions, keep_edges;
   std::int64_t first_row; // number of row 0 in the whole field, for the numbers of edges
   NotedRanges ranges;
+  GivenMasks given;
   VertexNumbers* numbers;
 
   Unit unit;

@@ -71,30 +71,18 @@ class CandidateSearch {
   }
 
   void pass_cell(std::size_t x, std::array<std::size_t, lines>& next) {
-    std::uint32_t code = 0;
-    unsigned crossed = 0;
-    std::array<std::size_t, columns> number{}; // of the crossing at each corner
+    typename CellLinks<D>::Signs signs;
+    std::array<std::size_t, columns> number; // of the crossing at each corner that changes
+    std::array<double, columns> time;
     for (unsigned line = 0; line < lines; ++line) {
-      const unsigned below = pair_at(below_[line], x), above = pair_at(above_[line], x),
-                     changed = below ^ above;
-      code |= (below & 1) << line | (above & 1) << (line + lines);
-      code |= (below >> 1) << (line + 2 * lines) | (above >> 1) << (line + 3 * lines);
-      crossed |= changed << (2 * line);
-      number[2 * line] = next[line];
-      number[2 * line + 1] = next[line] += changed & 1;
+      const unsigned below = pair_at(below_[line], x), changed = below ^ pair_at(above_[line], x);
+      signs.below |= below << (2 * line);
+      signs.changed |= changed << (2 * line);
+      if (changed & 1) number[2 * line] = next[line]++, time[2 * line] = crossings_->time(number[2 * line]);
+      if (changed & 2) number[2 * line + 1] = next[line], time[2 * line + 1] = crossings_->time(next[line]);
     }
-    for (unsigned rest = crossed; rest != 0; rest &= rest - 1) {
-      const auto corner = static_cast<unsigned>(std::countr_zero(rest));
-      const double time = crossings_->time(number[corner]);
-      unsigned earlier = 0;
-      for (unsigned others = crossed & ~(1u << corner); others != 0; others &= others - 1) {
-        const auto other = static_cast<unsigned>(std::countr_zero(others));
-        const double other_time = crossings_->time(number[other]);
-        earlier |= static_cast<unsigned>(other_time < time || (other_time == time && other < corner))
-                   << other;
-      }
-      poles_[number[corner]] |= links_.poles(code, corner, earlier);
-    }
+    links_.for_each_crossing(signs, signs.changed, time,
+                             [&](unsigned corner, std::uint8_t poles) { poles_[number[corner]] |= poles; });
   }
 
   static unsigned pair_at(const std::uint64_t* words, std::size_t x) {

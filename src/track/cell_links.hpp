@@ -4,6 +4,8 @@
 #include "extract/march_table.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <vector>
 
 namespace hyperiso::track_detail {
@@ -21,7 +23,7 @@ class CellLinks {
   static constexpr unsigned columns = 1u << space; // edges along time of a cell, by their corner of space
   static constexpr std::uint8_t not_simple = 0x80;
 
-  explicit CellLinks(const MarchTable<D>& table) : table_(table), known_(std::size_t{1} << known_bits) {
+  explicit CellLinks(const MarchTable<D>& table) : table_(table) {
     for (unsigned upper = 1; upper < 1u << D; ++upper)
       for (int axis = 0; axis < D; ++axis)
         if (upper >> axis & 1) {
@@ -31,14 +33,52 @@ class CellLinks {
         }
   }
 
-  // The poles of the edge at `corner` that are earlier, as bits 2 axis + (1 if it lies upwards); `not_simple`
-  // where the cell does not tell. `code`: of the cell, as the table has it. `earlier`: bit j: the crossing at
-  // corner j, if there is one, is earlier than this one.
-  std::uint8_t poles(std::uint32_t code, unsigned corner, unsigned earlier) {
-    const std::uint64_t key = std::uint64_t{code} << 16 | corner << 8 | earlier;
-    std::uint64_t& entry = known_[(key * 0x9e3779b97f4a7c15u) >> (64 - known_bits)];
-    if (entry >> 8 != key + 1) entry = (key + 1) << 8 | find_poles(code, corner, earlier);
-    return static_cast<std::uint8_t>(entry);
+  // The signs of a cell's corners of space, as bits: which are inside at the lower step, and which change.
+  struct Signs {
+    unsigned below = 0, changed = 0;
+  };
+  // Of a code as the table has it: columns of places along all axes but the first.
+  static Signs signs_of(std::uint32_t code) {
+    Signs signs;
+    for (unsigned corner = 0; corner < columns; ++corner) {
+      const unsigned bit = corner >> 1 | (corner & 1) << space;
+      const unsigned below = code >> bit & 1, above = code >> (bit + (1u << (space - 1))) & 1;
+      signs.below |= below << corner;
+      signs.changed |= (below ^ above) << corner;
+    }
+    return signs;
+  }
+
+  // Calls use(corner, poles) for the crossings of a cell that are wanted: `poles` are those of the edge at
+  // `corner` that are earlier than its crossing, as bits 2 axis + (1 if it lies upwards), or `not_simple`
+  // where the cell does not tell. `time`: of the crossing at each corner, where it matters for those wanted;
+  // of equal ones that at the smaller corner is earlier.
+  template <class Use>
+  void for_each_crossing(Signs signs, unsigned wanted, const std::array<double, columns>& time, Use&& use) {
+    std::array<std::uint8_t, columns> corners; // of the crossings
+    std::array<std::uint8_t, columns> earlier; // of the other ones, in their order
+    unsigned count = 0;
+    for (unsigned rest = signs.changed; rest != 0; rest &= rest - 1) {
+      corners[count] = static_cast<std::uint8_t>(std::countr_zero(rest));
+      unsigned earlier_here = 0;
+      for (unsigned other = 0; other < count; ++other) {
+        const bool other_first = time[corners[other]] <= time[corners[count]];
+        earlier_here |= static_cast<unsigned>(other_first) << other;
+        earlier[other] |= static_cast<std::uint8_t>(static_cast<unsigned>(!other_first) << (count - 1));
+      }
+      earlier[count++] = static_cast<std::uint8_t>(earlier_here);
+    }
+    if (count == 0) return;
+    std::vector<std::uint8_t>& known = known_[signs.changed];
+    const std::size_t of_each = std::size_t{1} << (count - 1);
+    if (known.empty()) known.resize((of_each * count) << columns);
+    std::uint8_t* entries = &known[signs.below * (of_each * count)];
+    for (unsigned crossing = 0; crossing < count; ++crossing, entries += of_each) {
+      if (!(wanted >> corners[crossing] & 1)) continue;
+      std::uint8_t& entry = entries[earlier[crossing]];
+      if (entry == 0) entry = is_known | find_poles(signs, corners, crossing, earlier[crossing]);
+      use(unsigned{corners[crossing]}, static_cast<std::uint8_t>(entry & ~is_known));
+    }
   }
 
  private:
@@ -49,7 +89,7 @@ class CellLinks {
     std::uint8_t lower, upper;
   };
 
-  static constexpr int known_bits = 17;
+  static constexpr std::uint8_t is_known = 0x40;
   static constexpr unsigned time_bit = 1u << space;
 
   bool is_earlier(unsigned slot, unsigned earlier) const {
@@ -64,6 +104,26 @@ class CellLinks {
     return !(differs >> axis & 1);
   }
 
+  static std::uint32_t code_of(Signs signs) {
+    std::uint32_t code = 0;
+    for (unsigned corner = 0; corner < columns; ++corner) {
+      const unsigned bit = corner >> 1 | (corner & 1) << space;
+      const unsigned below = signs.below >> corner & 1, above = below ^ (signs.changed >> corner & 1);
+      code |= below << bit | above << (bit + (1u << (space - 1)));
+    }
+    return code;
+  }
+  // Of the given one of the crossings at `corners`; `earlier` as in `for_each_crossing`.
+  std::uint8_t find_poles(Signs signs, const std::array<std::uint8_t, columns>& corners, unsigned crossing,
+                          unsigned earlier) {
+    unsigned earlier_corners = 0;
+    for (; earlier != 0; earlier &= earlier - 1) {
+      const auto other = static_cast<unsigned>(std::countr_zero(earlier));
+      earlier_corners |= 1u << corners[other < crossing ? other : other + 1];
+    }
+    return find_poles(code_of(signs), corners[crossing], earlier_corners);
+  }
+  // `earlier`: corners.
   std::uint8_t find_poles(std::uint32_t code, unsigned corner, unsigned earlier) {
     find_faces(code, Edges::slot(corner, corner | time_bit));
     std::uint8_t poles = 0;
@@ -145,8 +205,10 @@ class CellLinks {
   }
 
   const MarchTable<D>& table_;
-  std::array<Ends, 256> ends_{};     // of each slot
-  std::vector<std::uint64_t> known_; // entries: key + 1 and what it gives
+  std::array<Ends, 256> ends_{}; // of each slot
+  // By the corners that change: for all that may be inside below, for each crossing, for all that may be
+  // earlier. 0 where not asked for.
+  std::array<std::vector<std::uint8_t>, std::size_t{1} << columns> known_;
   std::vector<Face> faces_;
   std::vector<Change> changes_; // between earlier and later, of the edges of each face
 };

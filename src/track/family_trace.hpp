@@ -403,39 +403,33 @@ class FamilyTrace {
     for (const TracedCell& cell : slab.cells) {
       if ((cell.taken & pieces_.along_time()) == 0) continue;
       const T* lowest = lowest_sample(slab, cell.at);
-      unsigned crossed = 0;
-      std::array<std::uint32_t, CellPieces<D>::columns> number{};
+      unsigned taken = 0;
+      std::array<std::uint32_t, CellPieces<D>::columns> number;
+      std::array<double, CellPieces<D>::columns> time{};
       for (unsigned corner = 0; corner < CellPieces<D>::columns; ++corner) {
         const unsigned slot = pieces_.slot_of_column(corner);
         if (!(cell.taken >> slot & 1)) continue;
-        crossed |= 1u << corner;
+        taken |= 1u << corner;
         const GridEdge edge = slab.samples->edge(cell_number(cell.at), slot);
         const auto [found, is_new] =
             number_of_edge.insert(edge, static_cast<std::uint32_t>(crossings.size()));
         number[corner] = found;
-        if (!is_new) continue;
-        const T* sample = lowest;
-        unsigned present = 0;
-        for (int axis = 0; axis < D - 1; ++axis) {
-          const unsigned bit = corner >> axis & 1;
-          sample += bit * slab.samples->slab().strides[axis];
-          present |= PoleTable::present(axis, cell.at[axis] + bit, dims_[axis]);
+        if (is_new) {
+          const T* sample = lowest;
+          unsigned present = 0;
+          for (int axis = 0; axis < D - 1; ++axis) {
+            const unsigned bit = corner >> axis & 1;
+            sample += bit * slab.samples->slab().strides[axis];
+            present |= PoleTable::present(axis, cell.at[axis] + bit, dims_[axis]);
+          }
+          crossings.push_back({edge, slab.samples->time_from(sample), static_cast<std::uint8_t>(present), 0});
+          if (crossings.back().time == 0 || crossings.back().time == 1) return std::nullopt;
         }
-        crossings.push_back({edge, slab.samples->time_from(sample), static_cast<std::uint8_t>(present), 0});
-        if (crossings.back().time == 0 || crossings.back().time == 1) return std::nullopt;
+        time[corner] = crossings[found].time;
       }
-      for (unsigned rest = crossed; rest != 0; rest &= rest - 1) {
-        const auto corner = static_cast<unsigned>(std::countr_zero(rest));
-        const double time = crossings[number[corner]].time;
-        unsigned earlier = 0;
-        for (unsigned others = crossed & ~(1u << corner); others != 0; others &= others - 1) {
-          const auto other = static_cast<unsigned>(std::countr_zero(others));
-          const double other_time = crossings[number[other]].time;
-          earlier |= static_cast<unsigned>(other_time < time || (other_time == time && other < corner))
-                     << other;
-        }
-        crossings[number[corner]].poles |= links_.poles(cell.code, corner, earlier);
-      }
+      links_.for_each_crossing(
+          CellLinks<D>::signs_of(cell.code), taken, time,
+          [&](unsigned corner, std::uint8_t poles) { crossings[number[corner]].poles |= poles; });
     }
     std::vector<GridEdge> candidates;
     for (const Crossing& crossing : crossings)

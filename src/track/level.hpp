@@ -59,7 +59,13 @@ class Level {
   // The component of a vertex of the surface at this step, if M has it.
   std::optional<std::size_t> component_of(const StepPieces& pieces, std::size_t vertex) const {
     if (pieces_) return pieces.piece(vertex);
-    const GridEdge edge = pieces.edge(vertex);
+    return component_in_slabs(pieces.edge(vertex));
+  }
+
+ private:
+  static constexpr std::uint32_t none = UINT32_MAX;
+
+  std::optional<std::size_t> component_in_slabs(GridEdge edge) const {
     if (upper_) {
       if (const auto found = upper_->slab.find(edge)) return component_[upper_places_[*found]];
     }
@@ -69,9 +75,6 @@ class Level {
     }
     return std::nullopt;
   }
-
- private:
-  static constexpr std::uint32_t none = UINT32_MAX;
 
   // Where the slices below, at and above the step are alike: the components are the pieces of the surface,
   // which are the strands that begin here.
@@ -341,8 +344,8 @@ class Level {
       for (const auto& component : side.components)
         simplices.insert(simplices.end(), component.begin(), component.end());
       const bool before = direction == Direction::before;
-      return RimCounter::count(
-          {(before ? level_.lower_ : level_.upper_)->slab, before ? 1.0 : 0.0, direction}, simplices);
+      return count_rims({(before ? level_.lower_ : level_.upper_)->slab, before ? 1.0 : 0.0, direction},
+                        simplices);
     }
 
     const Level& level_;

@@ -25,8 +25,7 @@ inline std::vector<double> shares(const Axis& axis) {
   return share;
 }
 
-// Samples of one sign that the surface does not part. With `hull`, all inside samples of a cell are
-// connected and outside ones along its edges; with `simplicial` both along the edges of the Kuhn grid.
+// Samples of one kind that hang together.
 template <int D>
 class Regions {
  public:
@@ -38,15 +37,27 @@ class Regions {
     Region region;
   };
 
-  // `mask`: of the samples of `field`.
+  // What the surface of a step does not part: with `hull`, all inside samples of a cell are connected and
+  // outside ones along its edges; with `simplicial` both along the edges of the Kuhn grid. `mask`: of the
+  // samples of `field`.
   template <class T>
   Regions(const FieldView<const T, D>& field, const StepMask& mask, Method method)
       : dims_(field.dims()), has_missing_(mask.has_missing()) {
     if (has_missing_)
       find_runs(field, mask);
     else
-      find_runs(mask);
-    unite(method);
+      find_runs(
+          mask.rows(), [&](std::size_t row, std::size_t word) { return mask.row(row)[word]; },
+          [](std::size_t, std::size_t) { return std::uint64_t{0}; });
+    unite(reaches(method));
+  }
+  // Connected along the edges of the grid. `inside`, `missing`: words of the masks of these, by the row and
+  // the number of the word in it.
+  template <class Inside, class Missing>
+  Regions(const std::array<std::int64_t, D>& dims, std::size_t rows, Inside&& inside, Missing&& missing)
+      : dims_(dims), has_missing_(true) {
+    find_runs(rows, inside, missing);
+    unite(reaches_along_edges());
   }
 
   std::size_t count() const { return kinds_.size(); }
@@ -67,27 +78,29 @@ class Regions {
   }
 
  private:
-  void find_runs(const StepMask& mask) {
-    for (std::size_t number = 0; number < mask.rows(); ++number) {
+  template <class Inside, class Missing>
+  void find_runs(std::size_t rows, Inside&& inside, Missing&& missing) {
+    for (std::size_t row = 0; row < rows; ++row) {
       first_.push_back(runs_.size());
-      const std::uint64_t* words = mask.row(number);
-      bool inside = words[0] & 1;
       for (std::int64_t begin = 0; begin < dims_[0];) {
-        const std::int64_t end = next_not(inside, words, begin);
-        runs_.push_back({begin, end, inside ? Kind::inside : Kind::outside, 0});
-        inside = !inside;
+        std::size_t word = static_cast<std::size_t>(begin / 64);
+        const auto all_if = [&](std::uint64_t bits) { return -(bits >> (begin % 64) & 1); };
+        const std::uint64_t inside_here = all_if(inside(row, word)),
+                            missing_here = all_if(missing(row, word));
+        const auto unlike = [&] {
+          return (inside(row, word) ^ inside_here) | (missing(row, word) ^ missing_here);
+        };
+        std::uint64_t other = unlike() & (~std::uint64_t{0} << (begin % 64));
+        while (other == 0 && 64 * (static_cast<std::int64_t>(word) + 1) < dims_[0]) ++word, other = unlike();
+        const std::int64_t end =
+            other == 0 ? dims_[0]
+                       : std::min(64 * static_cast<std::int64_t>(word) + std::countr_zero(other), dims_[0]);
+        const Kind kind = missing_here != 0 ? Kind::missing : inside_here != 0 ? Kind::inside : Kind::outside;
+        runs_.push_back({begin, end, kind, 0});
         begin = end;
       }
     }
     first_.push_back(runs_.size());
-  }
-  // The first sample from `begin` on that is not like it, or the end of the row.
-  std::int64_t next_not(bool inside, const std::uint64_t* words, std::int64_t begin) const {
-    const std::uint64_t like = inside ? ~std::uint64_t{0} : 0;
-    std::int64_t word = begin / 64;
-    std::uint64_t other = (words[word] ^ like) & (~std::uint64_t{0} << (begin % 64));
-    while (other == 0 && 64 * (word + 1) < dims_[0]) other = words[++word] ^ like;
-    return other == 0 ? dims_[0] : std::min(64 * word + std::countr_zero(other), dims_[0]);
   }
 
   template <class T>
@@ -116,14 +129,25 @@ class Regions {
     Kind kind;
   };
 
+  Reach reach(const std::array<int, D>& step, Kind kind, int low, int high) const {
+    std::int64_t offset = 0;
+    for (int axis = D - 1; axis > 0; --axis) offset = offset * dims_[axis] + step[axis];
+    return {offset, step, low, high, kind};
+  }
+  std::vector<Reach> reaches_along_edges() const {
+    std::vector<Reach> result;
+    for (int axis = 1; axis < D; ++axis) {
+      std::array<int, D> step{};
+      step[axis] = -1;
+      result.push_back(reach(step, Kind::inside, 0, 0));
+      result.push_back(reach(step, Kind::outside, 0, 0));
+    }
+    return result;
+  }
   std::vector<Reach> reaches(Method method) const {
     std::vector<Reach> result;
     std::array<int, D> step{};
-    const auto add = [&](Kind kind, int low, int high) {
-      std::int64_t offset = 0;
-      for (int axis = D - 1; axis > 0; --axis) offset = offset * dims_[axis] + step[axis];
-      result.push_back({offset, step, low, high, kind});
-    };
+    const auto add = [&](Kind kind, int low, int high) { result.push_back(reach(step, kind, low, high)); };
     int combinations = 1;
     for (int axis = 1; axis < D; ++axis) combinations *= 3;
     for (int code = 0; code < combinations; ++code) {
@@ -149,12 +173,16 @@ class Regions {
     return result;
   }
 
-  void unite(Method method) {
+  void unite(const std::vector<Reach>& all) {
+    std::vector<Reach> of_outside; // most rows have nothing else
+    for (const Reach& reach : all)
+      if (reach.kind == Kind::outside) of_outside.push_back(reach);
     UnionFind united(runs_.size());
-    const auto all = reaches(method);
     std::array<std::int64_t, D> index{};
     for (std::size_t number = 0; number < rows(); ++number) {
-      for (const Reach& reach : all) {
+      const bool all_outside =
+          first_[number + 1] == first_[number] + 1 && runs_[first_[number]].kind == Kind::outside;
+      for (const Reach& reach : all_outside ? of_outside : all) {
         bool exists = true;
         for (int axis = 1; axis < D; ++axis)
           exists &= index[axis] + reach.step[axis] >= 0 && index[axis] + reach.step[axis] < dims_[axis];
@@ -212,10 +240,14 @@ class RegionOverlap {
     for (std::size_t row = 0; row < first.rows(); ++row) {
       double row_share = 1;
       for (std::size_t axis = 1; axis < D; ++axis) row_share *= share[axis][index[axis]];
-      auto other = second.row(row).begin();
-      for (const auto& run : first.row(row)) {
+      const auto in_first = first.row(row), in_second = second.row(row);
+      const bool none_wanted = (in_first.size() == 1 && !first_wanted[in_first[0].region]) ||
+                               (in_second.size() == 1 && !second_wanted[in_second[0].region]);
+      auto other = in_second.begin();
+      for (const auto& run : in_first) {
+        if (none_wanted) break;
         while (other->end <= run.begin) ++other;
-        for (auto reached = other; reached != second.row(row).end() && reached->begin < run.end; ++reached)
+        for (auto reached = other; reached != in_second.end() && reached->begin < run.end; ++reached)
           if (first_wanted[run.region] && second_wanted[reached->region])
             sizes_[key(run.region, reached->region)] +=
                 row_share * (up_to[static_cast<std::size_t>(std::min(run.end, reached->end))] -

@@ -3,6 +3,7 @@
 
 #include "extract/march_table.hpp"
 #include "track/crossings.hpp"
+#include "track/landmarks.hpp"
 
 namespace hyperiso::track_detail {
 
@@ -66,6 +67,23 @@ class SignedCells {
     return time_between(ends.lower);
   }
 
+  // The walls of the domain's space that the edge lies on: bit 2 axis for the first, 2 axis + 1 for the last.
+  std::uint8_t walls(GridEdge edge) const {
+    const auto ends = grid_edge_ends<D>(dims_, edge);
+    unsigned walls = 0;
+    for (int axis = 0; axis < D - 1; ++axis)
+      walls |= ((ends.upper[axis] == 0 ? 1u : 0u) | (ends.lower[axis] == dims_[axis] - 1 ? 2u : 0u))
+               << (2 * axis);
+    return static_cast<std::uint8_t>(walls);
+  }
+
+  // Of the slice at a moment (landmarks.hpp), if they are known; and how many parts of a slice are searched
+  // in the time that it takes to find them.
+  virtual std::unique_ptr<Landmarks<D>> landmarks(double /*moment*/, Direction, bool /*of_rim*/) const {
+    return nullptr;
+  }
+  virtual std::size_t cost_of_landmarks() const { return SIZE_MAX; }
+
   // Calls use(cell) for all cells that the surface may pass, ascending.
   template <class Use>
   void for_each_cell(Use&& use) const {
@@ -99,8 +117,14 @@ class SignedCells {
 template <int D>
 class MaskedCells final : public SignedCells<D> {
  public:
-  MaskedCells(const MarchTable<D>& table, Crossings<D> crossings)
-      : SignedCells<D>(table, crossings.dims()), crossings_(std::move(crossings)) {}
+  // `table`: of the method.
+  MaskedCells(const MarchTable<D>& table, Method method, Crossings<D> crossings)
+      : SignedCells<D>(table, crossings.dims()), method_(method), crossings_(std::move(crossings)) {}
+
+  std::unique_ptr<Landmarks<D>> landmarks(double moment, Direction direction, bool of_rim) const override {
+    return std::make_unique<Landmarks<D>>(crossings_, method_, moment, direction, of_rim);
+  }
+  std::size_t cost_of_landmarks() const override { return crossings_.rows() / 8; }
 
  private:
   std::size_t row_in_step(const std::array<std::int64_t, D>& sample) const {
@@ -130,6 +154,7 @@ class MaskedCells final : public SignedCells<D> {
     return code;
   }
 
+  Method method_;
   Crossings<D> crossings_;
 };
 

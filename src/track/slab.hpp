@@ -122,6 +122,31 @@ class Slab {
     return unfolded_stars_[vertex];
   }
 
+  // Whether a triangle of M is one where M ends: at a wall of the domain, or where samples are missing.
+  bool is_on_boundary(const std::array<Vertex, 3>& triangle) {
+    if (cells_) return walls_[triangle[0]] & walls_[triangle[1]] & walls_[triangle[2]];
+    const auto has = [&](SimplexNumber number, Vertex vertex) {
+      const auto corners = simplex(number);
+      return std::ranges::find(corners, vertex) != corners.end();
+    };
+    return std::ranges::count_if(star(triangle[0]), [&](SimplexNumber number) {
+             return has(number, triangle[1]) && has(number, triangle[2]);
+           }) == 1;
+  }
+
+  // Of a slice (landmarks.hpp), if the slab unfolds; and how many parts of a slice are searched in the time
+  // that it takes to find them.
+  std::unique_ptr<Landmarks<C>> landmarks(double moment, Direction direction, bool of_rim) const {
+    if constexpr (C <= 4)
+      if (cells_) return cells_->landmarks(moment, direction, of_rim);
+    return nullptr;
+  }
+  std::size_t cost_of_landmarks() const {
+    if constexpr (C <= 4)
+      if (cells_) return cells_->cost_of_landmarks();
+    return SIZE_MAX;
+  }
+
   // By cell, and in the order of its table within one.
   bool comes_before(SimplexNumber a, SimplexNumber b) const {
     return cells_ && cell_of_[a] != cell_of_[b] ? cell_of_[a] < cell_of_[b] : a < b;
@@ -139,6 +164,7 @@ class Slab {
     if (is_new) {
       edges_.push_back(edge);
       times_.push_back(cells_->time(edge));
+      walls_.push_back(cells_->walls(edge));
     }
     return number;
   }
@@ -177,6 +203,7 @@ class Slab {
 
   std::unique_ptr<Cells> cells_;
   NumberMap vertex_on_edge_, first_of_cell_;
+  std::vector<std::uint8_t> walls_;                        // of each vertex
   std::vector<std::uint64_t> cell_of_;                     // each simplex
   std::vector<std::vector<SimplexNumber>> unfolded_stars_; // empty where not asked for
 };

@@ -19,50 +19,104 @@ struct Slice {
   bool is_after(Vertex vertex) const {
     return direction == Direction::after ? slab.time(vertex) > moment : slab.time(vertex) >= moment;
   }
-  bool meets(SimplexNumber number) const {
-    bool before = false, after = false;
-    for (const Vertex vertex : slab.simplex(number)) (is_after(vertex) ? after : before) = true;
-    return before && after;
-  }
-  // Calls use(before, after) for the edges of a simplex that cross the slice.
+};
+
+// What a search passes: parts of a slice, numbered, which hang together where they share an edge of M that
+// crosses it. First the simplices that meet it.
+template <int C>
+struct PartsOfSlice : Slice<C> {
+  static constexpr bool of_rim = false;
+
+  // Calls use(before, after) for the edges of a part that cross the slice.
   template <class Use>
-  void for_each_edge(SimplexNumber number, Use&& use) const {
-    const auto corners = slab.simplex(number);
+  void for_each_edge(std::uint32_t part, Use&& use) const {
+    const auto corners = this->slab.simplex(part);
+    for (const Vertex before : corners)
+      if (!this->is_after(before))
+        for (const Vertex after : corners)
+          if (this->is_after(after)) use(before, after);
+  }
+  // Calls use(part) for the parts around an edge that crosses the slice.
+  template <class Use>
+  void for_each_around(Vertex before, Vertex after, Use&& use) const {
+    for (const SimplexNumber simplex : this->slab.star(before)) {
+      const auto corners = this->slab.simplex(simplex);
+      if (std::find(corners.begin(), corners.end(), after) != corners.end()) use(simplex);
+    }
+  }
+};
+
+// The boundary curves of a slice of a surface in 3D: its parts are the triangles where M ends, at walls of
+// the domain or of the data, each as 4 times its simplex plus the corner left out.
+struct PartsOfRims : Slice<4> {
+  static constexpr bool of_rim = true;
+
+  template <class Use>
+  void for_each_edge(std::uint32_t part, Use&& use) const {
+    const auto corners = triangle(part);
     for (const Vertex before : corners)
       if (!is_after(before))
         for (const Vertex after : corners)
           if (is_after(after)) use(before, after);
   }
-  // Calls use(number) for the simplices around an edge that crosses the slice.
   template <class Use>
   void for_each_around(Vertex before, Vertex after, Use&& use) const {
-    for (const SimplexNumber number : slab.star(before)) {
-      const auto corners = slab.simplex(number);
-      if (std::find(corners.begin(), corners.end(), after) != corners.end()) use(number);
+    for (const SimplexNumber simplex : slab.star(before)) {
+      const auto corners = slab.simplex(simplex);
+      if (std::ranges::find(corners, after) == corners.end()) continue;
+      for (std::uint32_t left_out = 0; left_out < 4; ++left_out)
+        if (corners[left_out] != before && corners[left_out] != after)
+          if (const std::uint32_t part = 4 * simplex + left_out; slab.is_on_boundary(triangle(part)))
+            use(part);
     }
+  }
+  // Calls use(part) for those of a simplex.
+  template <class Use>
+  void for_each_part(SimplexNumber simplex, Use&& use) const {
+    for (std::uint32_t left_out = 0; left_out < 4; ++left_out) {
+      const std::uint32_t part = 4 * simplex + left_out;
+      const auto corners = triangle(part);
+      const auto after = std::ranges::count_if(corners, [&](Vertex vertex) { return is_after(vertex); });
+      if (after != 0 && after != 3 && slab.is_on_boundary(corners)) use(part);
+    }
+  }
+
+ private:
+  using Triangle = std::array<Vertex, 3>;
+
+  Triangle triangle(std::uint32_t part) const {
+    const auto corners = slab.simplex(part / 4);
+    Triangle result;
+    for (std::size_t corner = 0, size = 0; corner < 4; ++corner)
+      if (corner != part % 4) result[size++] = corners[corner];
+    return result;
   }
 };
 
 // Which of several places in a slice are connected within it. All searches advance in turn, and the last
-// that is neither exhausted nor met is left unfinished: the cost is that of the smaller pieces.
-template <int C>
+// that is neither exhausted nor met is left unfinished: the cost is that of the smaller pieces. In a search
+// that takes long, those that come to landmarks of one name have as good as met.
 class PieceSearch {
  public:
   struct Piece {
-    std::vector<SimplexNumber> simplices; // all of them if finished, else as far as the search went
+    std::vector<std::uint32_t> parts; // all of them if finished, else as far as the search went
     bool finished = false;
   };
 
-  // `seeds`: for each place some simplices that meet the slice and are connected near it. The pieces come in
-  // the order of their first seeds.
-  std::vector<Piece> find(const Slice<C>& slice, const std::vector<std::vector<SimplexNumber>>& seeds) {
+  // `seeds`: for each place some parts that are connected near it. The pieces come in the order of their
+  // first seeds.
+  template <class Parts>
+  std::vector<Piece> find(const Parts& parts, const std::vector<std::vector<std::uint32_t>>& seeds) {
     ++search_;
     UnionFind groups(seeds.size());
-    std::vector<std::vector<SimplexNumber>> found(seeds.size());
+    std::vector<std::vector<std::uint32_t>> found(seeds.size());
     std::vector<std::size_t> next(seeds.size(), 0); // what of `found` has been expanded
-    NumberMap edges;                                // whose simplices are claimed: each is gone round once
+    NumberMap edges;                                // whose parts are claimed: each is gone round once
+    decltype(parts.slab.landmarks(0, {}, false)) landmarks;
+    NumberMap seed_at_landmark;
+    std::size_t parts_passed = 0;
     for (std::size_t seed = 0; seed < seeds.size(); ++seed)
-      for (const SimplexNumber simplex : seeds[seed]) claim(simplex, seed, groups, found);
+      for (const std::uint32_t part : seeds[seed]) claim(part, seed, groups, found);
 
     const auto unfinished = [&] {
       std::set<std::uint64_t> open;
@@ -73,22 +127,26 @@ class PieceSearch {
     std::set<std::uint64_t> open = unfinished();
     while (open.size() > 1) {
       for (std::size_t seed = 0; seed < seeds.size(); ++seed)
-        for (int turns = 0; turns < 16 && next[seed] < found[seed].size(); ++turns) {
-          const SimplexNumber simplex = found[seed][next[seed]++];
-          slice.for_each_edge(simplex, [&](Vertex before, Vertex after) {
+        for (int turns = 0; turns < 16 && next[seed] < found[seed].size(); ++turns)
+          parts.for_each_edge(found[seed][next[seed]++], [&](Vertex before, Vertex after) {
             if (!edges.insert(std::uint64_t{before} << 32 | after, 0).second) return;
-            slice.for_each_around(before, after,
-                                  [&](SimplexNumber other) { claim(other, seed, groups, found); });
+            if (landmarks)
+              if (const auto name = landmarks->name(parts.slab.edge(before), parts.slab.edge(after)))
+                groups.unite(seed_at_landmark.insert(*name, static_cast<std::uint32_t>(seed)).first, seed);
+            parts.for_each_around(before, after,
+                                  [&](std::uint32_t other) { claim(other, seed, groups, found); });
           });
-        }
       open = unfinished();
+      parts_passed += 16 * seeds.size(); // or fewer
+      if (!landmarks && parts_passed > parts.slab.cost_of_landmarks())
+        landmarks = parts.slab.landmarks(parts.moment, parts.direction, Parts::of_rim);
     }
 
     std::map<std::uint64_t, Piece> pieces;
     for (std::size_t seed = 0; seed < seeds.size(); ++seed) {
       Piece& piece = pieces[groups.find(seed)];
       piece.finished = !open.contains(groups.find(seed));
-      piece.simplices.insert(piece.simplices.end(), found[seed].begin(), found[seed].end());
+      piece.parts.insert(piece.parts.end(), found[seed].begin(), found[seed].end());
     }
     std::vector<Piece> result;
     for (auto& [root, piece] : pieces) result.push_back(std::move(piece));
@@ -96,90 +154,29 @@ class PieceSearch {
   }
 
  private:
-  void claim(SimplexNumber simplex, std::size_t seed, UnionFind& groups,
-             std::vector<std::vector<SimplexNumber>>& found) {
-    if (simplex >= owner_.size()) owner_.resize(2 * std::size_t{simplex} + 64);
-    Owner& owner = owner_[simplex];
+  void claim(std::uint32_t part, std::size_t seed, UnionFind& groups,
+             std::vector<std::vector<std::uint32_t>>& found) {
+    if (part >= owner_.size()) owner_.resize(2 * std::size_t{part} + 64);
+    Owner& owner = owner_[part];
     if (owner.search == search_) return groups.unite(owner.seed, seed);
     owner = {search_, static_cast<std::uint32_t>(seed)};
-    found[seed].push_back(simplex);
+    found[seed].push_back(part);
   }
 
   struct Owner {
     std::uint32_t search = 0, seed = 0;
   };
-  std::vector<Owner> owner_; // of each simplex
+  std::vector<Owner> owner_; // of each part
   std::uint32_t search_ = 0;
 };
 
-// The boundary curves of a slice of a surface in 3D: where M ends at walls of the domain, or of the data.
-class RimCounter {
- public:
-  // The number of curves with a point in one of the simplices, all of which meet the slice.
-  static std::int64_t count(const Slice<4>& slice, std::span<const SimplexNumber> simplices) {
-    std::set<Facet> seen;
-    std::int64_t curves = 0;
-    for (const SimplexNumber simplex : simplices)
-      for_each_rim_facet(slice, simplex, [&](const Facet& facet) {
-        if (!seen.insert(facet).second) return;
-        ++curves;
-        follow(slice, facet, seen);
-      });
-    return curves;
-  }
-
- private:
-  using Facet = std::array<Vertex, 3>; // ascending
-
-  static void follow(const Slice<4>& slice, const Facet& start, std::set<Facet>& seen) {
-    std::vector<Facet> waiting{start};
-    while (!waiting.empty()) {
-      const Facet facet = waiting.back();
-      waiting.pop_back();
-      for (const Vertex before : facet)
-        for (const Vertex after : facet) {
-          if (slice.is_after(before) || !slice.is_after(after)) continue;
-          for (const SimplexNumber number : slice.slab.star(before))
-            for_each_rim_facet(slice, number, [&](const Facet& other) {
-              if (contains(other, before) && contains(other, after) && seen.insert(other).second)
-                waiting.push_back(other);
-            });
-        }
-    }
-  }
-
-  template <class Use>
-  static void for_each_rim_facet(const Slice<4>& slice, SimplexNumber number, Use&& use) {
-    const auto corners = slice.slab.simplex(number);
-    for (std::size_t left_out = 0; left_out < 4; ++left_out) {
-      Facet facet;
-      std::size_t size = 0;
-      int after = 0;
-      for (std::size_t corner = 0; corner < 4; ++corner)
-        if (corner != left_out) {
-          facet[size++] = corners[corner];
-          after += slice.is_after(corners[corner]);
-        }
-      if (after == 0 || after == 3 || simplices_with(slice.slab, facet) != 1) continue;
-      std::ranges::sort(facet);
-      use(facet);
-    }
-  }
-
-  static int simplices_with(Slab<4>& slab, const Facet& facet) {
-    int count = 0;
-    for (const SimplexNumber number : slab.star(facet[0])) {
-      const auto corners = slab.simplex(number);
-      const auto is_corner = [&](Vertex v) {
-        return std::find(corners.begin(), corners.end(), v) != corners.end();
-      };
-      count += is_corner(facet[1]) && is_corner(facet[2]);
-    }
-    return count;
-  }
-  static bool contains(const Facet& facet, Vertex vertex) {
-    return std::find(facet.begin(), facet.end(), vertex) != facet.end();
-  }
-};
+// The number of boundary curves of a slice with a point in one of the simplices, all of which meet it.
+inline std::int64_t count_rims(const Slice<4>& slice, std::span<const SimplexNumber> simplices) {
+  const PartsOfRims rims{slice};
+  std::vector<std::vector<std::uint32_t>> seeds;
+  for (const SimplexNumber simplex : simplices)
+    rims.for_each_part(simplex, [&](std::uint32_t part) { seeds.push_back({part}); });
+  return seeds.empty() ? 0 : std::ssize(PieceSearch().find(rims, seeds));
+}
 
 } // namespace hyperiso::track_detail

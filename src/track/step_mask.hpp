@@ -42,6 +42,7 @@ class StepMask {
   // 0 if no sample of the row is inside, 255 if all are, 1 otherwise.
   std::uint8_t uniform(std::size_t number) const { return uniform_[number]; }
   const std::uint64_t* row(std::size_t number) const { return &bits_[number * words_]; }
+  const std::uint8_t* uniform() const { return uniform_.data(); } // of all rows
   bool inside(std::size_t row_number, std::size_t x) const { return row(row_number)[x / 64] >> (x % 64) & 1; }
 
  private:

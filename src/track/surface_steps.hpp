@@ -1,6 +1,7 @@
 #pragma once
 // The surface at each step and between two of them, as tracking takes it.
 
+#include "extract/extract_with.hpp"
 #include "track/candidates.hpp"
 #include "track/sweep.hpp"
 
@@ -35,16 +36,20 @@ class SurfaceSteps {
     }
   }
 
-  Result<Step> step(const FieldView<const T, D - 1>& samples) const {
+  Result<Step> step(const FieldView<const T, D - 1>& samples) {
+    auto mask = std::make_shared<const StepMask>(samples, isovalue_, options_.inside);
     ExtractOptions options = options_;
     options.precision = Precision::f64;
-    auto mesh = extract(samples, isovalue_, options);
-    if (!mesh) return mesh.error();
-    if (mesh->vertex_count() > UINT32_MAX)
+    options.workspace = &workspace_;
+    EngineOptions with_masks;
+    if (!mask->has_missing()) with_masks.given_masks = {mask->row(0), mask->uniform()};
+    SimplexMesh<D - 1> mesh;
+    if (Status status = extract_with(samples, isovalue_, options, with_masks, mesh); !status)
+      return status.error();
+    if (mesh.vertex_count() > UINT32_MAX)
       return Error{Code::out_of_memory, "the surface at a step has more than 2^32 vertices"};
-    return Step{std::make_shared<const StepMask>(samples, isovalue_, options_.inside),
-                std::make_shared<const StepSurface<D - 1>>(std::move(*mesh),
-                                                           static_cast<GridEdge>(samples.dims()[0]))};
+    return Step{std::move(mask), std::make_shared<const StepSurface<D - 1>>(
+                                     std::move(mesh), static_cast<GridEdge>(samples.dims()[0]))};
   }
 
   // What lies between two steps. Where vertices only come close to the steps but do not lie on them, and no
@@ -56,7 +61,7 @@ class SurfaceSteps {
       Crossings<D> crossings(samples.field(), isovalue_, lower.mask, upper.mask);
       if (!crossings.has_ties()) {
         std::vector<GridEdge> candidates = candidates_->find(crossings);
-        Slab<D> slab(std::make_unique<MaskedCells<D>>(*table_, std::move(crossings)));
+        Slab<D> slab(std::make_unique<MaskedCells<D>>(*table_, options_.method, std::move(crossings)));
         describe(slab, samples);
         return std::make_unique<Sweep<D>>(std::move(slab), lower_time, upper_time, lower.pieces(),
                                           std::move(candidates));
@@ -74,6 +79,7 @@ class SurfaceSteps {
  private:
   double isovalue_;
   ExtractOptions options_;
+  Workspace workspace_; // of the surfaces at steps
   const MarchTable<D>* table_ = nullptr;
   std::optional<CandidateSearch<D>> candidates_;
 };

@@ -36,7 +36,7 @@ class SurfaceTarget {
       : isovalue_(isovalue), extraction_(options.extraction),
         exact_(options.overlap_volumes == OverlapVolumes::exact), steps_(isovalue, options.extraction) {}
 
-  Result<Step> step(const FieldView<const T, D - 1>& samples) const { return steps_.step(samples); }
+  Result<Step> step(const FieldView<const T, D - 1>& samples) { return steps_.step(samples); }
 
   Result<std::unique_ptr<Sweep<D>>> between(const FieldView<const T, D>& two_steps, const Step& lower,
                                             const Step& upper, double lower_time, double upper_time) {

@@ -261,7 +261,7 @@ class Sweep {
       for (const Vertex vertex : cluster.vertices) place.add(slab.place(slab.edge(vertex)));
       place_of_clusters.add({place.mean(), place.all_on_wall()});
     }
-    const auto pieces = search_.find({slab, moment, Direction::after}, seeds);
+    const auto pieces = search_.find(PartsOfSlice<C>{{slab, moment, Direction::after}}, seeds);
     if (before.size() == 1 && pieces.size() == 1 && slab.has_rims())
       change.rims = change_of_rims(level_component, critical, moment);
 
@@ -284,14 +284,14 @@ class Sweep {
   }
 
   // One strand for each piece. What was not searched to its end goes on with those before, united.
-  std::vector<std::uint64_t> relabel(const std::vector<typename PieceSearch<C>::Piece>& pieces,
+  std::vector<std::uint64_t> relabel(const std::vector<PieceSearch::Piece>& pieces,
                                      const std::set<std::uint64_t>& before, double moment) {
     std::vector<std::uint64_t> after;
     for (const auto& piece : pieces) {
       std::uint64_t strand = 0;
       if (piece.finished || before.empty()) {
         strand = strands_.add();
-        label(piece.simplices, moment, strand);
+        label(piece.parts, moment, strand);
       } else { // what it comes from leads to the strand
         for (const std::uint64_t other : before) strands_.unite(*before.begin(), other);
         strand = strands_.find(*before.begin());
@@ -311,8 +311,8 @@ class Sweep {
         for (const auto& component : critical[number].after.components)
           after.insert(after.end(), component.begin(), component.end());
       }
-      return RimCounter::count({slab, moment, Direction::after}, after) -
-             RimCounter::count({slab, moment, Direction::before}, before);
+      return count_rims({slab, moment, Direction::after}, after) -
+             count_rims({slab, moment, Direction::before}, before);
     } else {
       return 0;
     }
@@ -329,7 +329,7 @@ class Sweep {
   std::map<std::pair<Vertex, SimplexNumber>, std::uint64_t> parted_; // at the lower step
   std::map<std::uint64_t, std::int64_t> arcs_;
   SideFinder<C> sides_;
-  PieceSearch<C> search_;
+  PieceSearch search_;
   LinkTest<C> link_;
 };
 

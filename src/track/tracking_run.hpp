@@ -34,7 +34,7 @@ class TrackingRun {
     if (const Status read = read_step(0); !read) return read.error();
     for (std::int64_t step = 0; step + 1 < graph_.steps; ++step) {
       if (const Status read = read_step(step + 1); !read) return read.error();
-      auto made = target_.between(window_.slab(step), this_step_, next_step_, time(step), time(step + 1));
+      auto made = target_.between(window_.slab(), this_step_, next_step_, time(step), time(step + 1));
       if (!made) return made.error();
       std::unique_ptr<Sweep<C>> upper = std::move(*made);
       if (const Status passed = pass_step(step, lower.get(), upper.get()); !passed) return passed.error();
@@ -58,7 +58,7 @@ class TrackingRun {
   Status read_step(std::int64_t step) {
     this_step_ = std::move(next_step_);
     if (const Status read = window_.read(step); !read) return read;
-    auto made = target_.step(window_.step(step));
+    auto made = target_.step(window_.step());
     if (!made) return made.error();
     next_step_ = std::move(*made);
     return {};
@@ -72,8 +72,7 @@ class TrackingRun {
 
     const bool last = !upper;
     std::vector<Feature> features;
-    std::unique_ptr<Rows> rows =
-        target_.rows(window_.slab(last ? step - 1 : step), last, this_step_, level, features);
+    std::unique_ptr<Rows> rows = target_.rows(window_.slab(), last, this_step_, level, features);
     for (const FieldBeside& field : options_.with)
       if (const Status added = add_with(*field.source, step, *rows, features); !added) return added;
     add_features(step, std::move(features));

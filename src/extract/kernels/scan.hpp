@@ -136,6 +136,11 @@ class Scan {
   bool fill_strip(std::int64_t rows) {
     std::uint64_t* masks = window_.mask(parity(), window_row_);
     std::uint8_t* uniform = window_.uniform(parity(), window_row_);
+    if (job_.given.masks) {
+      std::copy_n(job_.given.masks + row_ * words_, rows * words_, masks);
+      std::copy_n(job_.given.uniform + row_, rows, uniform);
+      return true;
+    }
     const InsideTest& test = samples_.test_in_layer(index_[D - 1]);
     bool missing = false;
     if (samples_.strides[0] == 1) {
