@@ -289,6 +289,20 @@ class Output(Case):
         self.assert_refused(2, "extract", self.sample(), "--iso", "nan", "-o", "out.vtu")
         self.assert_refused(2, "convert", "bad.nrrd", "-o", "out.npy")
 
+    # Standard output has the report; the shell's habit of "-" would make a file of that name.
+    def test_no_file_is_called_minus(self):
+        arguments = {"sample": ["ball", "--dims", "4,4"], "extract": [WATER, "--iso", "0.5"], "interval": [WATER, "--range", "0.4:0.6"]}
+        for verb in VERBS:
+            if re.search(r"--output\b", self.ok(verb, "--help").out):
+                self.assert_refused(2, verb, *arguments.get(verb, [WATER]), "-o", "-", words=["-o", "standard output"])
+
+    def test_the_report_names_the_files_there_are(self):
+        self.assertIn("wrote  a.pvd, and a .vti for each of its 2 steps\n",
+                      self.ok("convert", WATER, "--steps", "3:5", "-o", "a.vti").out)
+        self.assertIn("wrote  b.pvd, and the .vti of its step\n", self.ok("convert", WATER, "--steps", "3:4", "-o", "b.vti").out)
+        self.assertEqual(self.files(), ["a.pvd", "a_0000.vti", "a_0001.vti", "b.pvd", "b_0000.vti"])
+        self.assertIn("wrote  c.vti\n", self.ok("convert", self.sample(), "-o", "c.vti").out)
+
     def test_unwritable_output_is_exit_code_1(self):
         field = self.sample()
         (self.folder / "folder.ply").mkdir()

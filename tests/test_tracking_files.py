@@ -96,6 +96,9 @@ def check_pictures(folder, tracks):
         return ElementTree.parse(folder / name).getroot().iter("{http://www.w3.org/2000/svg}" + tag)
 
     shown = [row for row in tracks if row["simplified"] == "0"]
+    for name in ("graph.svg", "volume.svg"):  # as wide as the window of a browser, if that is less
+        picture = next(of(name, "svg"))
+        assert "max-width:100%" in picture.get("style") and picture.get("viewBox").split()[2] == picture.get("width")
     titles = [title.text for title in of("graph.svg", "title")]
     assert sum(title.startswith("track ") for title in titles) == len(shown)
     assert not any(word in path.get("d") for path in of("graph.svg", "path") for word in ("nan", "inf"))

@@ -64,7 +64,7 @@ int run(const ConvertVerb& options) {
   Report report;
   report.add("field", size_and_type(field.info));
   report.add("took", seconds(read_seconds) + " to read, " + seconds(write_seconds) + " to write");
-  report.add("wrote", options.output.path);
+  report.add("wrote", options.output.files_of(field.info));
   print(report.text());
   return 0;
 }

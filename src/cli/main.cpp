@@ -67,6 +67,14 @@ void check_verb(const CLI::App& program, const std::vector<std::string>& argumen
   fail_usage(text("there is no verb '", word, "'; there are ", verbs));
 }
 
+// Standard output has the report; a file called "-" is nobody's wish.
+void check_output(const CLI::App& verb) {
+  const CLI::Option* output = verb.get_option_no_throw("--output");
+  if (output && output->count() > 0 && output->as<std::string>() == "-")
+    fail_usage(
+        "-o: results are not written to standard output, which has the report; name a file instead of -");
+}
+
 // What the verb has to offer where memory does not suffice.
 std::string memory_advice(const CLI::App& verb) {
   const auto has = [&](const char* option) { return verb.get_option_no_throw(option) != nullptr; };
@@ -109,6 +117,7 @@ int run(std::vector<std::string> arguments) {
         text(error.what(), "; see 'hyperiso ", command ? command->app->get_name() + " " : "", "--help'"));
   }
   const Command& command = *chosen(commands);
+  check_output(*command.app);
   try {
     return command.run();
   } catch (Failure& failure) {

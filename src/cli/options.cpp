@@ -243,6 +243,16 @@ void FieldOutputOptions::check(const FieldInfo& info) const {
   take(check_field_format(info, path, write_options()));
 }
 
+std::string FieldOutputOptions::files_of(const FieldInfo& info) const {
+  std::filesystem::path series = path;
+  const std::string suffix = series.extension().string();
+  if (!info.has_time || (suffix != ".vti" && suffix != ".pvd")) return path;
+  const std::int64_t steps = info.axes.back().count;
+  const std::string files =
+      steps == 1 ? "the .vti of its step" : text("a .vti for each of its ", steps, " steps");
+  return text(series.replace_extension("pvd").string(), ", and ", files);
+}
+
 double FieldOutputOptions::write(const Field& field, bool quiet) const {
   const ProgressBar bar("write", quiet);
   const Stopwatch stopwatch;

@@ -96,6 +96,8 @@ struct FieldOutputOptions {
   void check(const FieldInfo& info) const;
   // Gives the seconds it took.
   double write(const Field& field, bool quiet) const;
+  // What is there then, for people.
+  std::string files_of(const FieldInfo& info) const;
 
  private:
   WriteFieldOptions write_options() const;

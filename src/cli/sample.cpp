@@ -78,7 +78,7 @@ int run(const Sample& options) {
   report.add("field", options.name + ", " + size_and_type(field->info));
   report.add("isovalue", shortest(isovalue) + " shows the shape");
   report.add("took", seconds(compute_seconds) + " to compute, " + seconds(write_seconds) + " to write");
-  report.add("wrote", options.output.path);
+  report.add("wrote", options.output.files_of(field->info));
   print(report.text());
   return 0;
 }

@@ -79,8 +79,10 @@ Result<const Format*> find_format(int dimension, int simplex_dimension, const st
                                     [&](const Format& candidate) { return candidate.name == name; });
   if (format == std::end(formats))
     return Error{Code::file_unsupported,
-                 text(path.string(), ": \"", name, "\" is no format for meshes here; ",
-                      "there are vtu, vtp, ply, stl, obj, off, svg and geojson")};
+                 text(path.string(), ": ",
+                      name.empty() ? "its name has no suffix to tell the format"
+                                   : text("\"", name, "\" is no format for meshes here"),
+                      "; there are vtu, vtp, ply, stl, obj, off, svg and geojson")};
   if (!fits(*format, dimension, simplex_dimension))
     return does_not_fit(*format, dimension, simplex_dimension, path);
   return format;

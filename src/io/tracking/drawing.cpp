@@ -30,11 +30,13 @@ std::vector<double> ticks(double low, double high, int wanted) {
 
 std::string pixel(double value) { return text(std::round(value * 100) / 100); }
 
+// In a browser's narrower window it shrinks; other programs take the width as it is.
 std::string svg_start(double width, double height, const std::string& title) {
   return text(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"",
       pixel(width), "\" height=\"", pixel(height), "\" viewBox=\"0 0 ", pixel(width), " ", pixel(height),
-      "\" font-family=\"system-ui, 'Segoe UI', 'DejaVu Sans', sans-serif\" font-size=\"12\" fill=\"#333\">\n",
+      "\" style=\"max-width:100%;height:auto\" font-family=\"system-ui, 'Segoe UI', 'DejaVu Sans', "
+      "sans-serif\" font-size=\"12\" fill=\"#333\">\n",
       "<title>", xml_escaped(title), "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
       "<text x=\"16\" y=\"24\" font-size=\"15\" font-weight=\"600\" fill=\"#111\">", xml_escaped(title),
       "</text>\n");
