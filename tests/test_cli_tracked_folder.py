@@ -196,11 +196,6 @@ class Source(Folder):
         (self.folder / "tracks").mkdir()
         self.assert_refused(2, *self.SHOW, words=["tracks", "source.json", "hyperiso track"])
 
-    def test_other_verbs_say_what_it_is(self):
-        self.track()
-        for verb in (["info"], ["extract", "--iso", "0.5"]):
-            self.assert_refused(2, verb[0], "tracks", *verb[1:], words=["tracks: is a folder"])
-
     # Whatever stands there, the answer is one line.
     def test_a_source_that_was_cut_or_edited(self):
         self.track()

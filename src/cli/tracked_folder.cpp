@@ -52,9 +52,7 @@ Json json_of_field(const FieldInfo& info) {
 
 // The way from a folder to a file, so that both can be moved together.
 std::string path_from(const fs::path& folder, const std::string& file) {
-  std::error_code failure;
-  const fs::path way = fs::relative(file, folder, failure);
-  return (way.empty() ? fs::absolute(file) : way).generic_string();
+  return fs::relative(file, folder).generic_string();
 }
 
 std::string source_file(const std::string& folder) { return (fs::path(folder) / file_name).string(); }

@@ -45,6 +45,11 @@ class CellPieces {
     return at_step_[at_step];
   }
 
+  // Whether of all cells around an edge within a step it is this one that lists it: the one where it lies at
+  // the lowest corner, or next to that where the domain ends. `ends`: a bit for each axis of space along
+  // which no cell follows.
+  bool lists(unsigned slot, unsigned ends) const { return (far_sides_[slot] & ~ends) == 0; }
+
   Slots beside(int axis, unsigned side) const { return beside_[axis][side]; } // in that facet of the cell
   unsigned mirrored(int axis, unsigned slot) const { return mirrored_[axis][slot]; } // in the cell behind it
   unsigned slot_of_column(unsigned corner) const { return slot_of_column_[corner]; } // of an edge along time
@@ -58,6 +63,7 @@ class CellPieces {
     const unsigned slot = Edges::slot(lower, upper);
     for (int axis = 0; axis < D; ++axis)
       if ((lower >> axis & 1) == (upper >> axis & 1)) beside_[axis][lower >> axis & 1] |= Slots{1} << slot;
+    far_sides_[slot] = static_cast<std::uint8_t>(lower & (time_bit - 1));
     if ((lower ^ upper) == time_bit) {
       slot_of_column_[lower] = slot;
       along_time_ |= Slots{1} << slot;
@@ -108,6 +114,7 @@ class CellPieces {
   std::array<std::array<Slots, 2>, D> beside_{};
   std::array<std::array<std::uint8_t, 32>, D> mirrored_{};
   std::array<unsigned, columns> slot_of_column_{};
+  std::array<std::uint8_t, 32> far_sides_{}; // axes along which a slot lies at the far side of the cell
   Slots along_time_ = 0;
   std::vector<std::unique_ptr<std::array<Slots, 32>>> of_code_;
   std::array<std::vector<Slots>, MarchTable<D - 1>::codes> at_step_;
@@ -124,6 +131,8 @@ class SampledCells final : public SignedCells<D> {
          ++bit) { // of a code: columns of places along the axes but the first
       offset_[bit] = (bit >> (D - 1) & 1) * slab.strides[0];
       for (int axis = 1; axis < D; ++axis) offset_[bit] += (bit >> (axis - 1) & 1) * slab.strides[axis];
+      for (unsigned position = 0; position < D; ++position)
+        if (!(bit >> position & 1)) near_bits_[position] |= std::uint32_t{1} << bit;
     }
   }
 
@@ -131,11 +140,19 @@ class SampledCells final : public SignedCells<D> {
   std::optional<std::uint32_t> code_at(const T* lowest) const {
     std::uint32_t code = 0;
     bool missing = false;
-    for (unsigned bit = 0; bit < 1u << D; ++bit) {
-      const T value = lowest[offset_[bit]];
-      code |= static_cast<std::uint32_t>(is_inside(value)) << bit;
-      missing |= is_missing(value);
-    }
+    for (unsigned bit = 0; bit < 1u << D; ++bit) missing |= add_bit(lowest, bit, code);
+    if (missing) return std::nullopt;
+    return code;
+  }
+  // The same for a cell on one side of another, of which the code is known, along an axis.
+  std::optional<std::uint32_t> code_beside(std::uint32_t known, int axis, unsigned side,
+                                           const T* lowest) const {
+    const unsigned position = axis == 0 ? D - 1 : axis - 1; // of the axis, in the number of a bit
+    const std::uint32_t near = near_bits_[position];
+    std::uint32_t code = side == 1 ? known >> (1u << position) & near : (known & near) << (1u << position);
+    bool missing = false;
+    for (std::uint32_t rest = side == 1 ? ~near & all_bits : near; rest != 0; rest &= rest - 1)
+      missing |= add_bit(lowest, static_cast<unsigned>(std::countr_zero(rest)), code);
     if (missing) return std::nullopt;
     return code;
   }
@@ -145,6 +162,14 @@ class SampledCells final : public SignedCells<D> {
   const FieldView<const T, D>& slab() const { return slab_; }
 
  private:
+  static constexpr std::uint32_t all_bits = static_cast<std::uint32_t>((std::uint64_t{1} << (1u << D)) - 1);
+
+  // Returns whether the sample is missing.
+  bool add_bit(const T* lowest, unsigned bit, std::uint32_t& code) const {
+    const T value = lowest[offset_[bit]];
+    code |= static_cast<std::uint32_t>(is_inside(value)) << bit;
+    return is_missing(value);
+  }
   bool is_inside(T value) const { return is_above_ ? above_.inside(value) : below_.inside(value); }
   bool inside(const std::array<std::int64_t, D>& sample) const override {
     return is_inside(slab_.at(sample));
@@ -167,6 +192,8 @@ class SampledCells final : public SignedCells<D> {
   SignRule<T, false> below_;
   bool is_above_;
   std::array<std::int64_t, 1 << D> offset_{};
+  std::array<std::uint32_t, D>
+      near_bits_{}; // of a code: the samples at the near side, by the bit of the axis
 };
 
 // The families through some cells, in a field with no missing samples and none that make ties near them.
@@ -205,10 +232,11 @@ class FamilyTrace {
       pending_.erase(pending_.begin());
       auto slab = slab_at(step);
       if (!slab) return slab.error();
+      (*slab)->number_of_cell.reserve(2 * requests.size());
       for (const Request& request : requests) {
         const std::size_t number = visit(**slab, request.at);
         if (number == none) return false;
-        take(step, **slab, number, request.slots);
+        take(step, **slab, number, request.slots, request.slots);
       }
       if (!follow_in_slab(step, **slab)) return false;
       std::uint64_t bytes = 0;
@@ -259,7 +287,9 @@ class FamilyTrace {
     Index at;
     std::uint32_t code;
     Slots taken;
+    std::array<std::array<std::uint32_t, 2>, space> beside; // cells that the family goes on in, or nothing
   };
+  static constexpr std::uint32_t nothing = UINT32_MAX;
   struct Request { // something that the slab beside has
     Index at;
     Slots slots;
@@ -306,21 +336,44 @@ class FamilyTrace {
       ++visited_;
       const auto code = slab.samples->code_at(lowest_sample(slab, at));
       if (!code) return none;
-      slab.cells.push_back({at, *code, 0});
+      add_cell(slab, at, *code);
     }
     return number;
   }
+  static void add_cell(SlabTrace& slab, const Index& at, std::uint32_t code) {
+    TracedCell& cell = slab.cells.emplace_back(TracedCell{at, code, 0, {}});
+    for (auto& sides : cell.beside) sides.fill(nothing);
+  }
+  // The same for the cell beside another one, which lies within the grid.
+  std::size_t visit_beside(SlabTrace& slab, std::uint32_t from, std::size_t axis, unsigned side) {
+    if (const std::uint32_t known = slab.cells[from].beside[axis][side]; known != nothing) return known;
+    Index at = slab.cells[from].at;
+    at[axis] += side == 1 ? 1 : -1;
+    const auto [number, is_new] =
+        slab.number_of_cell.insert(cell_number(at), static_cast<std::uint32_t>(slab.cells.size()));
+    if (is_new) {
+      ++visited_;
+      const auto code = slab.samples->code_beside(slab.cells[from].code, static_cast<int>(axis), side,
+                                                  lowest_sample(slab, at));
+      if (!code) return none;
+      add_cell(slab, at, *code);
+    }
+    slab.cells[from].beside[axis][side] = number;
+    slab.cells[number].beside[axis][1 - side] = from;
+    return number;
+  }
 
-  // Takes the pieces of a cell that have one of the slots.
-  void take(std::int64_t step, SlabTrace& slab, std::size_t number, Slots slots) {
+  // Takes the pieces of a cell that have one of the slots. `known`: of slots at a step, those that the slab
+  // beside has.
+  void take(std::int64_t step, SlabTrace& slab, std::size_t number, Slots slots, Slots known = 0) {
     TracedCell& cell = slab.cells[number];
     const auto& pieces = pieces_.pieces(cell.code);
     for (Slots rest = slots & ~cell.taken; rest != 0; rest &= ~cell.taken & (rest - 1)) {
       const Slots piece = pieces[static_cast<std::size_t>(std::countr_zero(rest))];
       cell.taken |= piece;
       slab.waiting.emplace_back(static_cast<std::uint32_t>(number), piece);
-      if (step > 0) request(step - 1, cell.at, piece & pieces_.beside(D - 1, 0));
-      if (step + 2 < steps_) request(step + 1, cell.at, piece & pieces_.beside(D - 1, 1));
+      if (step > 0) request(step - 1, cell.at, piece & pieces_.beside(D - 1, 0) & ~known);
+      if (step + 2 < steps_) request(step + 1, cell.at, piece & pieces_.beside(D - 1, 1) & ~known);
     }
   }
   void request(std::int64_t step, const Index& at, Slots slots) {
@@ -341,10 +394,10 @@ class FamilyTrace {
         for (unsigned side = 0; side < 2; ++side) {
           const Slots shared = slots & pieces_.beside(axis, side);
           if (shared == 0) continue;
-          Index at = slab.cells[number].at;
-          at[axis] += side == 1 ? 1 : -1;
-          if (at[axis] < 0 || at[axis] > dims_[axis] - 2) continue;
-          const std::size_t other = visit(slab, at);
+          const auto along = static_cast<std::size_t>(axis);
+          const std::int32_t index = slab.cells[number].at[along];
+          if (side == 1 ? index == dims_[along] - 2 : index == 0) continue;
+          const std::size_t other = visit_beside(slab, number, along, side);
           if (other == none) return false;
           take(step, slab, other, mirrored(axis, shared));
         }
@@ -354,34 +407,50 @@ class FamilyTrace {
 
   // The pieces of the surface at the lower or the upper step, as far as they were taken.
   std::shared_ptr<const StepPieces> pieces_at(const SlabTrace& slab, bool upper) const {
-    NumberMap number_of_edge;
-    std::vector<GridEdge> edges; // on the lower step
-    UnionFind united(0);
+    std::vector<Slots> pieces; // of the cells, one cell after the other
+    std::vector<std::uint32_t> first;
     for (const TracedCell& cell : slab.cells) {
+      first.push_back(static_cast<std::uint32_t>(pieces.size()));
       const Slots at_step = cell.taken & pieces_.beside(D - 1, upper ? 1 : 0);
       if (at_step == 0) continue;
       const Slots taken = upper ? mirrored(D - 1, at_step) : at_step;
-      for (const Slots piece : pieces_.pieces_at_lower_step(upper ? upper_half(cell.code) : cell.code)) {
-        if ((piece & taken) == 0) continue;
-        std::optional<std::uint32_t> first;
-        for (Slots rest = piece; rest != 0; rest &= rest - 1) {
-          const GridEdge edge =
-              slab.samples->edge(cell_number(cell.at), static_cast<unsigned>(std::countr_zero(rest)));
-          const auto [number, is_new] = number_of_edge.insert(edge, static_cast<std::uint32_t>(edges.size()));
-          if (is_new) {
-            edges.push_back(edge);
-            united.add();
-          }
-          if (first)
-            united.unite(*first, number);
-          else
-            first = number;
+      for (const Slots piece : pieces_.pieces_at_lower_step(upper ? upper_half(cell.code) : cell.code))
+        if ((piece & taken) != 0) pieces.push_back(piece);
+    }
+    first.push_back(static_cast<std::uint32_t>(pieces.size()));
+
+    UnionFind united(pieces.size());
+    std::vector<GridEdge> edges; // on the lower step
+    std::vector<std::uint32_t> piece_of_edge;
+    for (std::size_t number = 0; number < slab.cells.size(); ++number) {
+      const TracedCell& cell = slab.cells[number];
+      unsigned ends = 0;
+      for (std::size_t axis = 0; axis < space; ++axis)
+        ends |= (cell.at[axis] == dims_[axis] - 2 ? 1u : 0u) << axis;
+      for (std::uint32_t piece = first[number]; piece < first[number + 1]; ++piece) {
+        for (std::size_t axis = 0; axis < space; ++axis) {
+          const std::uint32_t other = cell.beside[axis][0];
+          const Slots shared = pieces[piece] & pieces_.beside(static_cast<int>(axis), 0);
+          if (other == nothing || shared == 0) continue;
+          const Slots there = mirrored(static_cast<int>(axis), shared);
+          for (std::uint32_t behind = first[other]; behind < first[other + 1]; ++behind)
+            if ((pieces[behind] & there) != 0) united.unite(piece, behind);
+        }
+        for (Slots rest = pieces[piece]; rest != 0; rest &= rest - 1) {
+          const auto slot = static_cast<unsigned>(std::countr_zero(rest));
+          if (!pieces_.lists(slot, ends)) continue;
+          edges.push_back(slab.samples->edge(cell_number(cell.at), slot));
+          piece_of_edge.push_back(piece);
         }
       }
     }
-    std::vector<std::uint32_t> piece;
-    for (std::uint32_t vertex = 0; vertex < edges.size(); ++vertex)
-      piece.push_back(static_cast<std::uint32_t>(united.find(vertex)));
+    std::vector<std::uint32_t> name(pieces.size(), nothing); // of whole pieces: a vertex
+    std::vector<std::uint32_t> piece(edges.size());
+    for (std::uint32_t vertex = 0; vertex < edges.size(); ++vertex) {
+      std::uint32_t& whole = name[united.find(piece_of_edge[vertex])];
+      if (whole == nothing) whole = vertex;
+      piece[vertex] = whole;
+    }
     return std::make_shared<const StepPieces>(edges, piece, static_cast<GridEdge>(dims_[0]),
                                               static_cast<int>(space));
   }
@@ -399,6 +468,7 @@ class FamilyTrace {
       std::uint8_t present, poles;
     };
     NumberMap number_of_edge;
+    number_of_edge.reserve(slab.cells.size());
     std::vector<Crossing> crossings;
     for (const TracedCell& cell : slab.cells) {
       if ((cell.taken & pieces_.along_time()) == 0) continue;

@@ -10,6 +10,10 @@ namespace hyperiso::track_detail {
 // Open addressing, at most half full. Keys are less than 2^64 - 1.
 class NumberMap {
  public:
+  // Makes room for so many keys.
+  void reserve(std::size_t count) {
+    while (2 * count > entries_.size()) grow();
+  }
   // The number of a key, `number` if it is new; and whether it is.
   std::pair<std::uint32_t, bool> insert(std::uint64_t key, std::uint32_t number) {
     if (2 * (count_ + 1) > entries_.size()) grow();

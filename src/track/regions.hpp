@@ -203,6 +203,11 @@ class Regions {
 
   void unite_rows(std::size_t number, const Reach& reach, UnionFind& united) const {
     const auto earlier = static_cast<std::size_t>(static_cast<std::int64_t>(number) + reach.row_offset);
+    if (first_[number + 1] - first_[number] == 1 && first_[earlier + 1] - first_[earlier] == 1) {
+      const std::size_t run = first_[number], other = first_[earlier]; // of whole rows
+      if (runs_[run].kind == reach.kind && runs_[other].kind == reach.kind) united.unite(run, other);
+      return;
+    }
     std::size_t other = first_[earlier];
     for (std::size_t run = first_[number]; run < first_[number + 1]; ++run) {
       if (runs_[run].kind != reach.kind) continue;

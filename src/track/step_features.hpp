@@ -50,6 +50,7 @@ class StepFeatures {
   // Measures the rows. Requires the surface at the step, with its edges and double positions.
   std::vector<Feature> measure(const SimplexMesh<D>& surface, const StepPieces& pieces,
                                const Level<D + 1>& level) {
+    positions_ = static_cast<const double*>(surface.positions.data());
     place_vertices(surface, pieces, level);
     find_pieces(pieces);
     add_simplices(surface);
@@ -94,7 +95,7 @@ class StepFeatures {
       Feature& feature = rows_.features[vertex_row_[vertex]];
       ++counts_[vertex_row_[vertex]].vertices;
       for (std::size_t axis = 0; axis < D; ++axis) {
-        const double coordinate = surface.positions[vertex * D + axis];
+        const double coordinate = positions_[vertex * D + axis];
         feature.low[axis] = std::min(feature.low[axis], coordinate);
         feature.high[axis] = std::max(feature.high[axis], coordinate);
       }
@@ -128,10 +129,10 @@ class StepFeatures {
   }
 
   // Coordinates measured from the lowest corner of the domain.
-  std::array<double, D> point(const SimplexMesh<D>& surface, std::uint64_t vertex) const {
+  std::array<double, D> point(std::uint64_t vertex) const {
     std::array<double, D> result;
     for (std::size_t axis = 0; axis < D; ++axis)
-      result[axis] = surface.positions[vertex * D + axis] - low_end_[axis];
+      result[axis] = positions_[vertex * D + axis] - low_end_[axis];
     return result;
   }
 
@@ -146,22 +147,23 @@ class StepFeatures {
       pieces_[piece_[a]].closed = false;
       if (vertex_row_[a] != SIZE_MAX) ++counts_[vertex_row_[a]].boundary_edges;
     };
-    for (std::size_t simplex = 0; simplex < surface.simplex_count(); ++simplex) {
-      std::array<std::uint64_t, D> corners;
-      for (std::size_t corner = 0; corner < D; ++corner)
-        corners[corner] = surface.simplices[simplex * D + corner];
-      add_simplex(surface, corners);
-      if constexpr (D == 2)
-        for (const std::uint64_t corner : corners) ++segments_at[corner];
-      if constexpr (D == 3)
-        for (std::size_t corner = 0; corner < 3; ++corner) {
-          const std::uint64_t a = corners[corner], b = corners[(corner + 1) % 3];
-          if (regions_.has_missing())
-            all_edges.push_back({std::min(a, b), std::max(a, b)});
-          else if (vertices_[a].walls & vertices_[b].walls)
-            add_boundary_edge(a, b);
-        }
-    }
+    surface.simplices.visit([&](auto all_corners) {
+      for (auto first = all_corners.begin(); first != all_corners.end(); first += D) {
+        std::array<std::uint64_t, D> corners;
+        std::copy_n(first, D, corners.begin());
+        add_simplex(corners);
+        if constexpr (D == 2)
+          for (const std::uint64_t corner : corners) ++segments_at[corner];
+        if constexpr (D == 3)
+          for (std::size_t corner = 0; corner < 3; ++corner) {
+            const std::uint64_t a = corners[corner], b = corners[(corner + 1) % 3];
+            if (regions_.has_missing())
+              all_edges.push_back({std::min(a, b), std::max(a, b)});
+            else if (vertices_[a].walls & vertices_[b].walls)
+              add_boundary_edge(a, b);
+          }
+      }
+    });
     std::ranges::sort(all_edges);
     for (std::size_t i = 0; i < all_edges.size(); ++i)
       if ((i == 0 || all_edges[i - 1] != all_edges[i]) &&
@@ -178,24 +180,22 @@ class StepFeatures {
       const std::int64_t edges = D == 3 ? (3 * count.simplices + count.boundary_edges) / 2 : count.simplices;
       rows_.features[row].euler_characteristic = count.vertices - edges + (D == 3 ? count.simplices : 0);
     }
-    add_wall_points(surface);
+    add_wall_points();
   }
 
-  void add_simplex(const SimplexMesh<D>& surface, const std::array<std::uint64_t, D>& corners) {
+  void add_simplex(const std::array<std::uint64_t, D>& corners) {
     SurfacePiece& piece = pieces_[piece_[corners[0]]];
     std::array<std::array<double, D>, D> p;
-    for (std::size_t corner = 0; corner < D; ++corner) p[corner] = point(surface, corners[corner]);
+    for (std::size_t corner = 0; corner < D; ++corner) p[corner] = point(corners[corner]);
     double area = 0, mean = 0;
-    for (const auto& q : p) mean += q[0] / D;
+    for (const auto& q : p) mean += q[0];
+    mean /= D;
     if constexpr (D == 3) {
-      std::array<double, 3> normal;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-        normal[k] =
-            0.5 * ((p[1][i] - p[0][i]) * (p[2][j] - p[0][j]) - (p[1][j] - p[0][j]) * (p[2][i] - p[0][i]));
-      }
-      area = std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
-      piece.signed_volume += normal[0] * mean;
+      const double ax = p[1][0] - p[0][0], ay = p[1][1] - p[0][1], az = p[1][2] - p[0][2];
+      const double bx = p[2][0] - p[0][0], by = p[2][1] - p[0][1], bz = p[2][2] - p[0][2];
+      const double nx = ay * bz - az * by, ny = az * bx - ax * bz, nz = ax * by - ay * bx;
+      area = 0.5 * std::sqrt(nx * nx + ny * ny + nz * nz);
+      piece.signed_volume += 0.5 * nx * mean;
       // The wall at the far end of axis 0 adds its length times the area inside, which is an integral along
       // the rim: x cross the direction of the edge points out of the inside.
       for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -216,7 +216,7 @@ class StepFeatures {
 
   // Crossings of the domain's edge along the last axis where all other coordinates are largest: what is left
   // of the walls' contribution to volumes.
-  void add_wall_points(const SimplexMesh<D>& surface) {
+  void add_wall_points() {
     double scale = 1;
     unsigned walls = 0;
     for (int axis = 0; axis + 1 < D; ++axis) scale *= length_[axis], walls |= far_wall_[axis];
@@ -227,7 +227,7 @@ class StepFeatures {
       std::copy(vertices_[vertex].lower.begin(), vertices_[vertex].lower.end(), lower.begin());
       const bool inside_first = regions_.at(lower) == inside;
       const double sign = inside_first == step_.grid.axes[D - 1].increasing() ? 1 : -1;
-      pieces_[piece_[vertex]].signed_volume += sign * scale * point(surface, vertex)[D - 1];
+      pieces_[piece_[vertex]].signed_volume += sign * scale * point(vertex)[D - 1];
     }
   }
 
@@ -313,8 +313,9 @@ class StepFeatures {
   std::array<unsigned, D> far_wall_; // bit of PlacedVertex::walls: where the axis' coordinate is largest
   FeatureRows<D> rows_;
   std::vector<std::vector<Region>> row_regions_;
-  std::vector<bool> wanted_;   // regions
-  std::vector<Counts> counts_; // of each row
+  std::vector<bool> wanted_;          // regions
+  std::vector<Counts> counts_;        // of each row
+  const double* positions_ = nullptr; // D of each vertex
   std::vector<PlacedVertex> vertices_;
   std::vector<std::size_t> vertex_row_; // or SIZE_MAX
   std::vector<std::size_t> piece_;      // of each vertex

@@ -22,16 +22,18 @@ class StepPieces {
       : edges_(surface.edges.begin(), surface.edges.end()), row_length_(row_length), space_(S),
         piece_(surface.edges.size()) {
     std::iota(piece_.begin(), piece_.end(), 0u); // parents at first
-    for (std::size_t simplex = 0; simplex < surface.simplex_count(); ++simplex) {
-      std::uint32_t first = root(static_cast<std::uint32_t>(surface.simplices[simplex * S]));
-      for (std::size_t corner = 1; corner < S; ++corner) {
-        const std::uint32_t other = root(static_cast<std::uint32_t>(surface.simplices[simplex * S + corner]));
-        if (other > first)
-          piece_[other] = first;
-        else
-          piece_[first] = other, first = other;
+    surface.simplices.visit([&](auto corners) {
+      for (auto corner = corners.begin(); corner != corners.end();) {
+        std::uint32_t first = root(static_cast<std::uint32_t>(*corner++));
+        for (std::size_t i = 1; i < S; ++i) {
+          const std::uint32_t other = root(static_cast<std::uint32_t>(*corner++));
+          if (other > first)
+            piece_[other] = first;
+          else
+            piece_[first] = other, first = other;
+        }
       }
-    }
+    });
     for (std::uint32_t vertex = 0; vertex < piece_.size(); ++vertex) {
       if (piece_[vertex] == vertex) {
         piece_[vertex] = static_cast<std::uint32_t>(first_.size());
