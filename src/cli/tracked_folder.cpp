@@ -64,6 +64,8 @@ std::string source_file(const std::string& folder) { return (fs::path(folder) / 
 Json read_source(const TrackedFolder& folder) {
   const std::string path = source_file(folder.path);
   std::ifstream file(path);
+  if (std::error_code failure; !file && fs::exists(path, failure))
+    throw Failure{{Code::file_unreadable, text(path, ": cannot be read")}};
   if (!file)
     fail_usage(text(folder.path, ": this folder has no ", file_name,
                     ", so it is none that 'hyperiso track -o' wrote"));
