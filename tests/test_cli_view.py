@@ -96,6 +96,7 @@ class View(Case):
         field = self.sample()
         self.assert_refused(2, "view", field, "-o", "a.html", words=["--iso"])
         self.assert_refused(2, "view", field, "--iso", "0.5", words=["output"])
+        self.assert_refused(2, "view", field, "--iso", "0.5", "-o", "a.glb", words=["a.glb", ".html"])
         self.assert_refused(2, "view", field, "--iso", "0.5,0.6", "-o", "a.html", words=["one isovalue"])
         self.assert_refused(2, "view", field, "--iso", "0.5", "--max-size", "many", "-o", "a.html", words=["--max-size"])
         self.assert_refused(2, "view", field, "--iso", "0.5", "--payload", "net", "-o", "a.html", words=["mesh, band and field"])

@@ -359,7 +359,16 @@ void check_payload(const View& options, bool from_mesh) {
                     "for WebAssembly (docs/dependencies.md), or take --payload mesh"));
 }
 
+void check_output(const std::string& path) {
+  const std::string suffix = std::filesystem::path(path).extension().string();
+  std::error_code failure;
+  const bool is_device = path.starts_with("/dev/") || std::filesystem::is_other(path, failure);
+  if (suffix != ".html" && suffix != ".htm" && !is_device)
+    fail_usage(text("-o: ", path, " does not end in .html, and a page is what view writes"));
+}
+
 int run(View options, const CLI::App& verb) {
+  check_output(options.path);
   const std::uint64_t size = parse_bytes("--max-size", options.size);
   if (names_folder(options.input)) {
     options.folder = open_tracked_folder(options.input, verb);
