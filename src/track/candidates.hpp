@@ -13,7 +13,7 @@ namespace hyperiso::track_detail {
 template <int D>
 class CandidateSearch {
  public:
-  explicit CandidateSearch(const MarchTable<D>& table) : links_(table), pole_table_(space) {}
+  explicit CandidateSearch(Method method) : links_(CellLinks<D>::of(method)), pole_table_(space) {}
 
   std::vector<GridEdge> find(const Crossings<D>& crossings) {
     crossings_ = &crossings;
@@ -109,7 +109,7 @@ class CandidateSearch {
     }
     return edges;
   }
-  CellLinks<D> links_;
+  const CellLinks<D>& links_;
   PoleTable pole_table_;
   const Crossings<D>* crossings_ = nullptr;
   std::array<const std::uint64_t*, lines> below_{}, above_{}; // masks beside a row of cells, at both steps

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <vector>
 
@@ -23,14 +24,15 @@ class CellLinks {
   static constexpr unsigned columns = 1u << space; // edges along time of a cell, by their corner of space
   static constexpr std::uint8_t not_simple = 0x80;
 
-  explicit CellLinks(const MarchTable<D>& table) : table_(table) {
-    for (unsigned upper = 1; upper < 1u << D; ++upper)
-      for (int axis = 0; axis < D; ++axis)
-        if (upper >> axis & 1) {
-          const unsigned lower = upper & ~(1u << axis);
-          ends_[Edges::slot(lower, upper)] = {static_cast<std::uint8_t>(lower),
-                                              static_cast<std::uint8_t>(upper)};
-        }
+  // Those of a method, made when first asked for and kept: what a cell tells is found once in a process,
+  // whichever thread asks for it.
+  static const CellLinks& of(Method method) {
+    if (method == Method::component) {
+      static const CellLinks links(march_table<D>(Method::component, {}));
+      return links;
+    }
+    static const CellLinks links(march_table<D>(Method::hull, {}));
+    return links;
   }
 
   // The signs of a cell's corners of space, as bits: which are inside at the lower step, and which change.
@@ -54,7 +56,8 @@ class CellLinks {
   // where the cell does not tell. `time`: of the crossing at each corner, where it matters for those wanted;
   // of equal ones that at the smaller corner is earlier.
   template <class Use>
-  void for_each_crossing(Signs signs, unsigned wanted, const std::array<double, columns>& time, Use&& use) {
+  void for_each_crossing(Signs signs, unsigned wanted, const std::array<double, columns>& time,
+                         Use&& use) const {
     std::array<std::uint8_t, columns> corners; // of the crossings
     std::array<std::uint8_t, columns> earlier; // of the other ones, in their order
     unsigned count = 0;
@@ -69,15 +72,17 @@ class CellLinks {
       earlier[count++] = static_cast<std::uint8_t>(earlier_here);
     }
     if (count == 0) return;
-    std::vector<std::uint8_t>& known = known_[signs.changed];
     const std::size_t of_each = std::size_t{1} << (count - 1);
-    if (known.empty()) known.resize((of_each * count) << columns);
-    std::uint8_t* entries = &known[signs.below * (of_each * count)];
+    std::uint8_t* entries = &known_[first_[signs.changed] + signs.below * (of_each * count)];
     for (unsigned crossing = 0; crossing < count; ++crossing, entries += of_each) {
       if (!(wanted >> corners[crossing] & 1)) continue;
-      std::uint8_t& entry = entries[earlier[crossing]];
-      if (entry == 0) entry = is_known | find_poles(signs, corners, crossing, earlier[crossing]);
-      use(unsigned{corners[crossing]}, static_cast<std::uint8_t>(entry & ~is_known));
+      const std::atomic_ref entry(entries[earlier[crossing]]); // threads that find it find the same
+      std::uint8_t poles = entry.load(std::memory_order_relaxed);
+      if (poles == 0) {
+        poles = is_known | find_poles(signs, corners, crossing, earlier[crossing]);
+        entry.store(poles, std::memory_order_relaxed);
+      }
+      use(unsigned{corners[crossing]}, static_cast<std::uint8_t>(poles & ~is_known));
     }
   }
 
@@ -89,8 +94,36 @@ class CellLinks {
     std::uint8_t lower, upper;
   };
 
+  // What is found of the link of an edge.
+  struct Change {  // between earlier and later
+    unsigned edge; // of the link: its slots
+    std::size_t face;
+  };
+  struct Link {
+    std::vector<Face> faces;
+    std::vector<Change> changes; // of the edges of each face
+  };
+
   static constexpr std::uint8_t is_known = 0x40;
   static constexpr unsigned time_bit = 1u << space;
+
+  explicit CellLinks(const MarchTable<D>& table) : table_(table) {
+    for (unsigned upper = 1; upper < 1u << D; ++upper)
+      for (int axis = 0; axis < D; ++axis)
+        if (upper >> axis & 1) {
+          const unsigned lower = upper & ~(1u << axis);
+          ends_[Edges::slot(lower, upper)] = {static_cast<std::uint8_t>(lower),
+                                              static_cast<std::uint8_t>(upper)};
+        }
+    std::size_t entries = 0;
+    for (std::size_t changed = 1; changed < first_.size(); ++changed) {
+      first_[changed] = static_cast<std::uint32_t>(entries);
+      const int count = std::popcount(changed);
+      entries += static_cast<std::size_t>(count) << (count - 1) << columns;
+    }
+    known_.reset(entries);
+    std::fill_n(known_.data(), entries, 0);
+  }
 
   bool is_earlier(unsigned slot, unsigned earlier) const {
     const auto [lower, upper] = ends_[slot];
@@ -115,7 +148,7 @@ class CellLinks {
   }
   // Of the given one of the crossings at `corners`; `earlier` as in `for_each_crossing`.
   std::uint8_t find_poles(Signs signs, const std::array<std::uint8_t, columns>& corners, unsigned crossing,
-                          unsigned earlier) {
+                          unsigned earlier) const {
     unsigned earlier_corners = 0;
     for (; earlier != 0; earlier &= earlier - 1) {
       const auto other = static_cast<unsigned>(std::countr_zero(earlier));
@@ -124,40 +157,41 @@ class CellLinks {
     return find_poles(code_of(signs), corners[crossing], earlier_corners);
   }
   // `earlier`: corners.
-  std::uint8_t find_poles(std::uint32_t code, unsigned corner, unsigned earlier) {
-    find_faces(code, Edges::slot(corner, corner | time_bit));
+  std::uint8_t find_poles(std::uint32_t code, unsigned corner, unsigned earlier) const {
+    Link link;
+    link.faces = find_faces(code, Edges::slot(corner, corner | time_bit));
     std::uint8_t poles = 0;
     std::array<int, space> changes_of_arc{}; // in the facet normal to the axis
-    changes_.clear();
-    for (std::size_t face = 0; face < faces_.size(); ++face)
-      for (std::size_t i = 0; i < faces_[face].size(); ++i) {
-        const unsigned a = faces_[face][i];
+    for (std::size_t face = 0; face < link.faces.size(); ++face)
+      for (std::size_t i = 0; i < link.faces[face].size(); ++i) {
+        const unsigned a = link.faces[face][i];
         const bool a_is_earlier = is_earlier(a, earlier);
         for (int axis = 0; axis < space; ++axis)
           if (a_is_earlier && is_pole(a, corner, axis))
             poles |= static_cast<std::uint8_t>(1u << (2 * axis + (corner >> axis & 1 ? 0 : 1)));
         for (std::size_t j = 0; j < i; ++j) {
-          const unsigned b = faces_[face][j];
+          const unsigned b = link.faces[face][j];
           if (a_is_earlier == is_earlier(b, earlier)) continue;
-          changes_.push_back({std::min(a, b) << 8 | std::max(a, b), face});
+          link.changes.push_back({std::min(a, b) << 8 | std::max(a, b), face});
           for (int axis = 0; axis < space; ++axis)
             if (beside(a, corner, axis) && beside(b, corner, axis)) ++changes_of_arc[axis];
         }
       }
-    return is_simple(changes_of_arc) ? poles : not_simple;
+    return is_simple(link.changes, changes_of_arc) ? poles : not_simple;
   }
 
   // The simplices of the link of an edge, given by its slot.
-  void find_faces(std::uint32_t code, unsigned edge) {
-    faces_.clear();
+  std::vector<Face> find_faces(std::uint32_t code, unsigned edge) const {
+    std::vector<Face> faces;
     for (std::size_t first = table_.first[code]; first < table_.first[code + 1]; first += D) {
       Face face;
       std::size_t size = 0;
       for (std::size_t i = 0; i < D; ++i)
         if (table_.corners[first + i] != edge && size < face.size()) face[size++] = table_.corners[first + i];
       if (std::find(&table_.corners[first], &table_.corners[first] + D, edge) != &table_.corners[first] + D)
-        faces_.push_back(face);
+        faces.push_back(face);
     }
+    return faces;
   }
 
   bool is_pole(unsigned slot, unsigned corner, int axis) const {
@@ -168,38 +202,34 @@ class CellLinks {
 
   // Whether the line between earlier and later, which runs from face to face through the edges that change,
   // is one that ends on two arcs, or none.
-  bool is_simple(const std::array<int, space>& changes_of_arc) {
-    if constexpr (D == 3) return changes_.size() <= 1;
+  static bool is_simple(const std::vector<Change>& changes, const std::array<int, space>& changes_of_arc) {
+    if constexpr (D == 3) return changes.size() <= 1;
     int ends = 0;
     for (const int count : changes_of_arc) {
       if (count > 1) return false;
       ends += count;
     }
-    if (ends == 0) return changes_.empty();
+    if (ends == 0) return changes.empty();
     // From one of its ends to the other; what is left would be another line. Each face it passes has two.
-    Change at = changes_[0];
+    Change at = changes[0];
     std::size_t passed = 0;
-    for (const Change& change : changes_)
-      if (partner(change) == nullptr) at = change;
-    for (const Change* next = &at; next != nullptr; next = partner(at)) {
+    for (const Change& change : changes)
+      if (partner(changes, change) == nullptr) at = change;
+    for (const Change* next = &at; next != nullptr; next = partner(changes, at)) {
       at = *next;
-      for (const Change& other : changes_)
+      for (const Change& other : changes)
         if (other.face == at.face && other.edge != at.edge) {
           at = other;
           break;
         }
       passed += 2;
     }
-    return passed == changes_.size();
+    return passed == changes.size();
   }
 
-  struct Change {
-    unsigned edge; // of the link: its slots
-    std::size_t face;
-  };
   // The same edge in the face on its other side.
-  const Change* partner(const Change& change) const {
-    for (const Change& other : changes_)
+  static const Change* partner(const std::vector<Change>& changes, const Change& change) {
+    for (const Change& other : changes)
       if (other.edge == change.edge && other.face != change.face) return &other;
     return nullptr;
   }
@@ -207,10 +237,9 @@ class CellLinks {
   const MarchTable<D>& table_;
   std::array<Ends, 256> ends_{}; // of each slot
   // By the corners that change: for all that may be inside below, for each crossing, for all that may be
-  // earlier. 0 where not asked for.
-  std::array<std::vector<std::uint8_t>, std::size_t{1} << columns> known_;
-  std::vector<Face> faces_;
-  std::vector<Change> changes_; // between earlier and later, of the edges of each face
+  // earlier. 0 where nobody asked for it.
+  std::array<std::uint32_t, std::size_t{1} << columns> first_{};
+  mutable Array<std::uint8_t> known_;
 };
 
 // Whether a vertex is regular, by the labels of the poles of a link that they describe: earlier and later

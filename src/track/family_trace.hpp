@@ -203,7 +203,7 @@ class FamilyTrace {
   FamilyTrace(StepSource& source, double isovalue, const ExtractOptions& options)
       : source_(source), isovalue_(isovalue), options_(options), steps_(source.info().axes.back().count),
         table_(march_table<D>(options.method, {})), pieces_(table_, march_table<D - 1>(options.method, {})),
-        links_(table_), pole_table_(space) {
+        links_(CellLinks<D>::of(options.method)), pole_table_(space) {
     for (int axis = 0; axis < D; ++axis)
       dims_[axis] = source.info().axes[static_cast<std::size_t>(axis)].count;
   }
@@ -514,7 +514,7 @@ class FamilyTrace {
   std::array<std::int64_t, D> dims_{};
   const MarchTable<D>& table_;
   CellPieces<D> pieces_;
-  CellLinks<D> links_;
+  const CellLinks<D>& links_;
   PoleTable pole_table_;
   std::map<std::int64_t, SlabTrace> slabs_;
   std::map<std::int64_t, std::vector<Request>> pending_; // of slabs

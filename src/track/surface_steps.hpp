@@ -32,7 +32,7 @@ class SurfaceSteps {
     options_.progress = {};
     if (options_.method != Method::simplicial) {
       table_ = &march_table<D>(options_.method, {});
-      candidates_.emplace(*table_);
+      candidates_.emplace(options_.method);
     }
   }
 
