@@ -8,9 +8,10 @@ import json
 import os
 import re
 import struct
+import subprocess
 import unittest
 
-from cli_case import Case, HAS_VIEW
+from cli_case import Case, HAS_VIEW, PROGRAM
 
 
 def metadata(page):
@@ -144,6 +145,15 @@ class Source(Folder):
         self.ok("animate", "tracks", "moved.nrrd", "-o", "a.pvd")
         self.assert_refused(2, "animate", "moved.nrrd", "tracks", "--iso", "0.5", "-o", "a.pvd")
 
+    def test_a_name_that_is_not_utf_8(self):
+        name = os.fsdecode(b"bl\xf6bs.nrrd")
+        (self.folder / "blobs.nrrd").rename(self.folder / name)
+        run = subprocess.run([PROGRAM, "track", name, "--iso", "0.5", "-o", "tracks"], capture_output=True, check=False)
+        self.assertEqual((run.returncode, run.stderr), (0, b""))
+        self.assert_refused(2, *self.SHOW, words=["FIELD"])
+        run = subprocess.run([PROGRAM, "animate", "tracks", name, "-o", "a.pvd"], capture_output=True, check=False)
+        self.assertEqual((run.returncode, run.stderr), (0, b""))
+
     def test_a_field_in_several_files(self):
         for step in range(3):
             self.ok("convert", "blobs.nrrd", "--steps", f"{step}:{step + 1}", "-o", f"step{step}.npy")
@@ -195,6 +205,11 @@ class Source(Folder):
     def test_other_folders_are_none_of_tracks(self):
         (self.folder / "tracks").mkdir()
         self.assert_refused(2, *self.SHOW, words=["tracks", "source.json", "hyperiso track"])
+
+    def test_other_verbs_say_what_it_is(self):
+        self.track()
+        for verb in (["info"], ["extract", "--iso", "0.5"]):
+            self.assert_refused(2, verb[0], "tracks", *verb[1:], words=["tracks: is a folder"])
 
     # Whatever stands there, the answer is one line.
     def test_a_source_that_was_cut_or_edited(self):

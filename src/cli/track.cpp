@@ -59,6 +59,16 @@ std::string seed_of_track(const std::string& select) {
   fail_usage(text("--select: ", path, " has no track ", wanted));
 }
 
+// Without INPUT, the folder of --select says what the field is and how it was tracked.
+TrackedFolder selected_folder(const std::string& select, const CLI::App& verb) {
+  const auto colon = select.rfind(':');
+  if (colon == std::string::npos)
+    fail_usage("INPUT is required, or --select FOLDER:ID; see 'hyperiso track --help'");
+  FieldOptions folder;
+  folder.paths = {select.substr(0, colon)};
+  return open_tracked_folder(folder, verb);
+}
+
 TrackedFolder folder_of(const Track& options) {
   TrackedFolder folder{options.directory, options.input, options.surface,
                        options.tracking,  options.seeds, {}};
@@ -136,7 +146,12 @@ std::string report_of(const Track& options, const TrackingGraph& graph, double t
   return report.text();
 }
 
-int run(const Track& options) {
+int run(Track options, const CLI::App& verb) {
+  std::optional<TrackedFolder> earlier;
+  if (options.input.paths.empty()) {
+    earlier = selected_folder(options.select, verb);
+    earlier->choose(options.input, options.tracking, options.surface);
+  }
   TrackOptions tracking = options.tracking.track_options(options.surface, options.machine);
   if (options.is_local() && tracking.tracked == Tracked::region)
     fail_usage("--seed and --select follow surfaces; leave out --track region and --range");
@@ -144,6 +159,7 @@ int run(const Track& options) {
     fail_usage("--with: with --seed or --select no features are measured");
   const TrackedFolder folder = folder_of(options);
   SelectedSteps steps(options.input.open(options.machine), options.input);
+  if (earlier) earlier->check_field(steps.info());
   PointDataOptions beside;
   beside.with = options.with;
   const std::vector<NamedSteps> others = beside.open(options.input, options.machine);
@@ -175,6 +191,7 @@ Command track_command(CLI::App& program) {
   auto options = std::make_shared<Track>();
   CLI::App* app = program.add_subcommand("track", "what happens to each component through time, and when");
   options->input.add_to(*app);
+  app->get_option("INPUT")->required(false); // --select may name it
   options->tracking.add_to(*app);
   options->surface.add_to(*app);
   app->add_option(
@@ -182,8 +199,10 @@ Command track_command(CLI::App& program) {
          "follow only the component through the grid cell around this point, and its relatives; repeatable")
       ->type_name("X,Y,...,T")
       ->group("Tracks");
-  app->add_option("--select", options->select,
-                  "follow only track ID, and its relatives, of an earlier run that wrote FOLDER")
+  app->add_option(
+         "--select", options->select,
+         "follow only track ID, and its relatives, of an earlier run that wrote FOLDER; without INPUT in the "
+         "same field, with the same options")
       ->type_name("FOLDER:ID")
       ->group("Tracks");
   app->add_option(
@@ -202,7 +221,7 @@ Command track_command(CLI::App& program) {
   set_manual(
       *app,
       {{"track INPUT... --iso V [--track region] [-o FOLDER] [options]",
-        "track INPUT... --range A:B [-o FOLDER] [options]"},
+        "track INPUT... --range A:B [-o FOLDER] [options]", "track --select FOLDER:ID [-o FOLDER] [options]"},
        {"Follows every connected component of the isosurface of a field on 2 or 3 axes of space through "
         "time, "
         "the last axis. Events have the exact times of the surface in space and time, also between the "
@@ -225,7 +244,7 @@ Command track_command(CLI::App& program) {
                                     "--min-volume 0.001 --min-duration 0.1 -o water"},
         {"tracks and events for a script",
          "hyperiso track examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 --json > water.json"}}});
-  return {app, [options] { return run(*options); }};
+  return {app, [options, app] { return run(*options, *app); }};
 }
 
 } // namespace hyperiso::cli

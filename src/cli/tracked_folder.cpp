@@ -52,7 +52,9 @@ Json json_of_field(const FieldInfo& info) {
 
 // The way from a folder to a file, so that both can be moved together.
 std::string path_from(const fs::path& folder, const std::string& file) {
-  return fs::relative(file, folder).generic_string();
+  std::error_code failure;
+  const fs::path way = fs::relative(file, folder, failure);
+  return (way.empty() ? fs::absolute(file) : way).generic_string();
 }
 
 std::string source_file(const std::string& folder) { return (fs::path(folder) / file_name).string(); }
@@ -192,7 +194,8 @@ void write_source(TrackedFolder folder, const FieldInfo& selected, FileGroup& fi
                     {"seeds", folder.seeds},
                     {"field", json_of_field(selected)}};
   auto file = take(AtomicFile::create(source_file(folder.path)));
-  file.write(source.dump(1) + "\n");
+  // A name that is not UTF-8 has no place in JSON: that field is to be named after the folder.
+  file.write(source.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   take(file.commit(&files));
 }
 

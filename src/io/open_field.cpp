@@ -26,6 +26,8 @@ constexpr Format formats[] = {
 };
 
 Error unknown_format(const std::filesystem::path& path) {
+  if (std::error_code failure; std::filesystem::is_directory(path, failure))
+    return {Code::file_unsupported, text(path.string(), ": is a folder, not a field")};
   std::string names;
   for (const Format& format : formats) names += text(names.empty() ? "" : ", ", format.suffix);
   const std::string suffix = path.extension().string();
