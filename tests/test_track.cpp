@@ -53,5 +53,24 @@ TEST(Track, small_fields_with_ties) {
                  {{EventType::enter, 0.5}, {EventType::merge, 0.75}});
 }
 
+// At the middle step all samples are inside, some of them by being equal to the isovalue: there is no
+// surface, but a level set where one track ends and another begins.
+TEST(Track, tracks_end_and_begin_somewhere_at_a_step_without_a_surface) {
+  const auto field = make_field<double, 3>(unit_grid<3>({5, 3, 3}), [](const auto& p) {
+    return p[2] == 1 ? std::max(0.0, p[0] - 2) : p[0] - 1.5;
+  });
+  const auto graph = track_field(time_field<double, 3>(field), 0);
+  expect_history(graph, {{EventType::birth, 1}, {EventType::death, 1}});
+  ASSERT_EQ(graph.features.size(), 4u);
+  for (const std::size_t row : {1, 2}) {
+    const Feature& feature = graph.features[row];
+    EXPECT_EQ(feature.cells, 0);
+    EXPECT_EQ(feature.volume, 0);
+    EXPECT_EQ(feature.centroid, (std::vector<double>{0.5, 1}));
+    EXPECT_EQ(feature.low, feature.centroid);
+    EXPECT_EQ(feature.high, feature.centroid);
+  }
+}
+
 } // namespace
 } // namespace hyperiso

@@ -67,7 +67,14 @@ TEST(TrackInvariants, arcs_are_conserved) {
       EXPECT_LE(graph.events[static_cast<std::size_t>(arc.start_event)].time,
                 graph.events[static_cast<std::size_t>(arc.end_event)].time);
     }
-    for (const auto& row : graph.features) EXPECT_GE(row.track, 0);
+    for (const auto& row : graph.features) {
+      EXPECT_GE(row.track, 0);
+      for (std::size_t axis = 0; axis < row.low.size(); ++axis) {
+        EXPECT_LE(row.low[axis], row.high[axis]);
+        EXPECT_TRUE(std::isfinite(row.low[axis]) && std::isfinite(row.high[axis]));
+        EXPECT_TRUE(std::isfinite(row.centroid[axis]));
+      }
+    }
   };
   for_random_fields<3>(15, 5, test);
   for_random_fields<4>(4, 3, test);
@@ -127,6 +134,50 @@ TEST(TrackInvariants, negating_the_field_and_swapping_inside_gives_the_same_grap
               signature(track_field(time_field(negated), 0, with(way, Inside::below))));
   };
   for_random_fields<3>(10, 5, test);
+  for_random_fields<4>(3, 3, test);
+}
+
+// Uneven steps, distances along axes and the way they run change no history: they name its times and places.
+TEST(TrackInvariants, axes_name_times_and_places) {
+  const auto test = [](const auto& field, const Way& way) {
+    constexpr int D = std::tuple_size_v<decltype(field.view.dims())>;
+    auto renamed = field;
+    auto& axes = renamed.view.grid.axes;
+    axes[0].origin = 7, axes[0].spacing = -0.25;
+    axes[1].spacing = 3;
+    axes[D - 1].coordinates = {-1, 0.5, 0.75, 20};
+    const auto graph = track_field(time_field(field), 0, with(way));
+    const auto other = track_field(time_field(renamed), 0, with(way));
+    const auto place = [&](int axis, double index) {
+      const auto below = std::min(static_cast<std::int64_t>(index), axes[axis].count - 2);
+      const double share = index - static_cast<double>(below);
+      return (1 - share) * axes[axis].coordinate(below) + share * axes[axis].coordinate(below + 1);
+    };
+    ASSERT_EQ(graph.events.size(), other.events.size());
+    for (std::size_t i = 0; i < graph.events.size(); ++i) {
+      const TrackingEvent &event = graph.events[i], &same = other.events[i];
+      EXPECT_EQ(event.type, same.type);
+      EXPECT_EQ(event.arcs_in, same.arcs_in);
+      EXPECT_EQ(event.arcs_out, same.arcs_out);
+      EXPECT_EQ(event.delta_euler, same.delta_euler);
+      EXPECT_NEAR(place(D - 1, event.time), same.time, 1e-12);
+      for (int axis = 0; axis + 1 < D; ++axis)
+        EXPECT_NEAR(place(axis, event.position[static_cast<std::size_t>(axis)]),
+                    same.position[static_cast<std::size_t>(axis)], 1e-12);
+    }
+    ASSERT_EQ(graph.features.size(), other.features.size());
+    for (std::size_t i = 0; i < graph.features.size(); ++i) {
+      const Feature &row = graph.features[i], &same = other.features[i];
+      EXPECT_NEAR(row.volume * 0.75, same.volume, 1e-5 * (1 + row.volume));
+      EXPECT_NEAR(row.cell_volume * 0.75, same.cell_volume, 1e-9);
+      EXPECT_NEAR(place(0, row.centroid[0]), same.centroid[0], 1e-5);
+      EXPECT_NEAR(place(0, row.low[0]), same.high[0], 1e-5);
+      EXPECT_EQ(row.track, same.track);
+      EXPECT_EQ(row.euler_characteristic, same.euler_characteristic);
+      EXPECT_EQ(row.wall_curves, same.wall_curves);
+    }
+  };
+  for_random_fields<3>(8, 5, test);
   for_random_fields<4>(3, 3, test);
 }
 

@@ -69,7 +69,9 @@ struct FieldSum {
   double minimum = std::numeric_limits<double>::infinity(), maximum = -minimum; ///< infinite without samples
 };
 
-/// A component at a step: one row of features.csv.
+/// A component at a step: one row of features.csv. Where samples equal the isovalue, the level set may have a
+/// piece where the surface at the step has none: all sizes are 0 then, and it lies in the middle of that
+/// piece.
 struct Feature {
   std::int64_t step = 0;
   double time = 0;
@@ -82,7 +84,7 @@ struct Feature {
   double cell_volume = 0; ///< the same as paper 003 counts it: cells by the share of their corners inside
   double surface_area = 0;
   double mass = 0; ///< sum of the samples inside, each by its share of the cells; of a region, the integral
-  double minimum = 0, maximum = 0;       ///< of the samples inside
+  double minimum = 0, maximum = 0;       ///< of the samples inside; infinite without any
   std::vector<double> centroid;          ///< of the samples inside, each by its share of the cells
   std::vector<double> low, high;         ///< bounding box of the surface
   std::int64_t euler_characteristic = 0; ///< of the surface, or of the region

@@ -35,6 +35,17 @@ class FeatureRows {
     last_cell_.resize(features.size(), -1);
   }
 
+  // Rows without a surface at the step, where samples equal the isovalue: they are where their level is.
+  template <int C>
+  void place_what_is_not_there(const Level<C>& level) {
+    for (std::size_t component = 0; component < row_of_component_.size(); ++component) {
+      const std::size_t row = row_of_component_[component];
+      if (row == SIZE_MAX || features[row].low[0] <= features[row].high[0]) continue;
+      const auto& middle = level.outcomes()[component].middle;
+      features[row].centroid = features[row].low = features[row].high = middle;
+    }
+  }
+
   std::size_t count() const { return last_cell_.size(); }
   // The row of each component of the level, or SIZE_MAX.
   std::size_t row_of(std::size_t component) const { return row_of_component_[component]; }

@@ -31,6 +31,7 @@ class Level {
   // What a component became: an arc that passes, or an event; neither where no track is.
   struct Outcome {
     std::int64_t arc = -1, event = -1;
+    std::vector<double> middle = {}; // the mean of its vertices, where it is not the surface at the step
   };
 
   // Decides every component and gives the strands of the upper slab their arcs.
@@ -241,14 +242,14 @@ class Level {
     }
     if (!type) {
       upper_->set_arc(out[0], in[0]);
-      return {in[0], -1};
+      return {in[0], -1, around.all_places.mean()};
     }
     const bool whole = !lower_ || !upper_ || in.empty() || out.empty();
     TrackingEvent& event = graph.add_event(*type, time, std::move(in), out.size());
     event.position = whole ? around.all_places.mean() : around.critical_position();
     event.delta_euler = change.euler;
     for (std::size_t i = 0; i < out.size(); ++i) upper_->set_arc(out[i], event.arcs_out[i]);
-    return {-1, graph.last_event()};
+    return {-1, graph.last_event(), around.all_places.mean()};
   }
 
   // The simplices around one component, for those few where something may happen.

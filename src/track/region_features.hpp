@@ -38,6 +38,7 @@ class RegionFeatures {
     for (std::size_t simplex = 0; simplex < simplex_count(); ++simplex) add_simplex(simplex);
     add_faces();
     finish();
+    rows_.place_what_is_not_there(level);
     return std::move(rows_.features);
   }
 

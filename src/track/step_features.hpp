@@ -56,6 +56,7 @@ class StepFeatures {
     add_simplices(surface);
     finish_pieces();
     add_samples();
+    rows_.place_what_is_not_there(level);
     return std::move(rows_.features);
   }
 

@@ -51,10 +51,11 @@ std::string features_csv(const TrackingGraph& graph) {
   const bool has_genus = names.size() == 3 && graph.tracked == Tracked::surface;
   for (const Feature& row : graph.features) {
     csv += text(row.step, ",", row.time, ",", row.track, ",", row.volume, ",", row.cell_volume, ",",
-                row.surface_area, ",", row.mass, ",", row.minimum, ",", row.maximum);
+                row.surface_area, ",", row.mass, ",", extreme(row.minimum), ",", extreme(row.maximum));
     for (const auto* point : {&row.centroid, &row.low, &row.high}) csv += text(",", joined(*point, ","));
     csv += text(",", row.euler_characteristic, ",", row.wall_curves, ",",
-                has_genus ? text(row.genus()) : std::string(), ",", row.cells, ",", row.on_wall);
+                has_genus && row.cells > 0 ? text(row.genus()) : std::string(), ",", row.cells, ",",
+                row.on_wall);
     for (const FieldSum& sum : row.with)
       csv += text(",", sum.mass, ",", extreme(sum.minimum), ",", extreme(sum.maximum));
     csv += "\n";
