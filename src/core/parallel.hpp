@@ -2,6 +2,7 @@
 // Work on several threads.
 
 #include <algorithm>
+#include <atomic>
 #include <exception>
 #include <mutex>
 #include <system_error>
@@ -39,6 +40,19 @@ void run_workers(int workers, Work&& work) {
   guarded(0);
   for (std::thread& thread : threads) thread.join();
   if (failure) std::rethrow_exception(failure);
+}
+
+// Calls tasks that do not depend on each other, begun in their order, on so many threads. Rethrows the first
+// exception.
+template <class... Tasks>
+void run_tasks(int threads, Tasks&&... tasks) {
+  std::atomic<std::size_t> next = 0;
+  run_workers(std::min(threads, static_cast<int>(sizeof...(tasks))), [&](int) {
+    for (std::size_t chosen; (chosen = next++) < sizeof...(tasks);) {
+      std::size_t number = 0;
+      ((number++ == chosen ? static_cast<void>(tasks()) : static_cast<void>(0)), ...);
+    }
+  });
 }
 
 } // namespace hyperiso

@@ -39,7 +39,12 @@ class RegionTarget {
     extraction_.progress = {};
   }
 
-  Result<Step> step(const FieldView<const T, D - 1>& samples) const {
+  struct Advance { // a step, and what lies between the one before and it
+    Step step;
+    std::unique_ptr<Sweep<D + 1>> between;
+  };
+
+  Result<Step> first_step(const FieldView<const T, D - 1>& samples) const {
     auto mesh = mesh_region(samples, levels_, extraction_);
     if (!mesh) return mesh.error();
     const StepMask mask(samples, levels_.first, levels_.inside);
@@ -48,15 +53,17 @@ class RegionTarget {
         mask.has_missing()};
   }
 
-  Result<std::unique_ptr<Sweep<D + 1>>> between(const FieldView<const T, D>& two_steps, const Step& lower,
-                                                const Step& upper, double lower_time,
-                                                double upper_time) const {
+  Result<Advance> advance(const FieldView<const T, D>& two_steps, const Step& lower, double lower_time,
+                          double upper_time) const {
+    auto upper = first_step(two_steps.at_index(D - 1, 1));
+    if (!upper) return upper.error();
     const auto mesh = mesh_region(two_steps, levels_, extraction_);
     if (!mesh) return mesh.error();
     auto slab = make_region_slab(RegionSlabSamples<T, D>(two_steps, levels_), *mesh,
-                                 lower.has_missing || upper.has_missing);
+                                 lower.has_missing || upper->has_missing);
     if (!slab) return slab.error();
-    return std::make_unique<Sweep<D + 1>>(std::move(*slab), lower_time, upper_time);
+    return Advance{std::move(*upper),
+                   std::make_unique<Sweep<D + 1>>(std::move(*slab), lower_time, upper_time)};
   }
 
   // The rows of the lower or upper one of two steps, measured into `features`.

@@ -26,10 +26,11 @@ struct SurfacePiece {
 template <class T, int D> // D: of space
 class StepFeatures {
  public:
-  // `step`: the samples. `level` knows M there and what became of its components.
-  StepFeatures(const FieldView<const T, D>& step, const StepMask& mask, const SlabSamples<T, D + 1>& samples,
-               bool upper_step, Method method, const Level<D + 1>& level)
-      : step_(step), samples_(samples), upper_step_(upper_step), regions_(step, mask, method), rows_(level) {
+  // `step`: the samples, of these regions. `level` knows M there and what became of its components.
+  StepFeatures(const FieldView<const T, D>& step, std::shared_ptr<const Regions<D>> regions,
+               const SlabSamples<T, D + 1>& samples, bool upper_step, const Level<D + 1>& level)
+      : step_(step), samples_(samples), upper_step_(upper_step), owned_regions_(std::move(regions)),
+        regions_(*owned_regions_), rows_(level) {
     for (int axis = 0; axis < D; ++axis) {
       const Axis& a = step.grid.axes[axis];
       share_[axis] = shares(a);
@@ -308,7 +309,8 @@ class StepFeatures {
   FieldView<const T, D> step_;
   SlabSamples<T, D + 1> samples_;
   bool upper_step_; // which step of `samples_` this is
-  Regions<D> regions_;
+  std::shared_ptr<const Regions<D>> owned_regions_;
+  const Regions<D>& regions_;
   std::array<std::vector<double>, D> share_;
   std::array<double, D> low_end_, length_; // of the domain
   std::array<unsigned, D> far_wall_; // bit of PlacedVertex::walls: where the axis' coordinate is largest

@@ -1,6 +1,7 @@
 #pragma once
 // The surface at each step and between two of them, as tracking takes it.
 
+#include "core/parallel.hpp"
 #include "extract/extract_with.hpp"
 #include "track/candidates.hpp"
 #include "track/sweep.hpp"
@@ -23,11 +24,18 @@ class SurfaceSteps {
   struct Step {
     std::shared_ptr<const StepMask> mask;
     std::shared_ptr<const StepSurface<D - 1>> surface;
+    std::shared_ptr<const Regions<D - 1>> regions; // if they are wanted
 
     std::shared_ptr<const StepPieces> pieces() const { return {surface, &surface->pieces}; }
   };
+  // A step, and what lies between the one before and it.
+  struct Advance {
+    Step step;
+    std::unique_ptr<Sweep<D>> between;
+  };
 
-  SurfaceSteps(double isovalue, const ExtractOptions& options) : isovalue_(isovalue), options_(options) {
+  SurfaceSteps(double isovalue, const ExtractOptions& options, bool wants_regions)
+      : isovalue_(isovalue), options_(options), wants_regions_(wants_regions) {
     options_.keep_edges = true;
     options_.progress = {};
     if (options_.method != Method::simplicial) {
@@ -36,49 +44,81 @@ class SurfaceSteps {
     }
   }
 
-  Result<Step> step(const FieldView<const T, D - 1>& samples) {
-    auto mask = std::make_shared<const StepMask>(samples, isovalue_, options_.inside);
-    ExtractOptions options = options_;
-    options.precision = Precision::f64;
-    options.workspace = &workspace_;
-    EngineOptions with_masks;
-    if (!mask->has_missing()) with_masks.given_masks = {mask->row(0), mask->uniform()};
-    SimplexMesh<D - 1> mesh;
-    if (Status status = extract_with(samples, isovalue_, options, with_masks, mesh); !status)
-      return status.error();
-    if (mesh.vertex_count() > UINT32_MAX)
-      return Error{Code::out_of_memory, "the surface at a step has more than 2^32 vertices"};
-    return Step{std::move(mask), std::make_shared<const StepSurface<D - 1>>(
-                                     std::move(mesh), static_cast<GridEdge>(samples.dims()[0]))};
+  Result<Step> first_step(const FieldView<const T, D - 1>& samples) {
+    Step step{mask_of(samples), {}, {}};
+    Status surface;
+    run_tasks(
+        threads(), [&] { surface = add_surface(samples, step); }, [&] { add_regions(samples, step); });
+    if (!surface) return surface.error();
+    return step;
   }
 
-  // What lies between two steps. Where vertices only come close to the steps but do not lie on them, and no
-  // sample is missing, little of it has to be looked at; elsewhere all of it is.
-  Result<std::unique_ptr<Sweep<D>>> between(const SlabSamples<T, D>& samples, const Step& lower,
-                                            const Step& upper, double lower_time, double upper_time) {
+  // Where vertices only come close to the steps but do not lie on them, and no sample is missing, little of
+  // what lies between has to be looked at; elsewhere all of it is.
+  Result<Advance> advance(const SlabSamples<T, D>& slab, const Step& lower, double lower_time,
+                          double upper_time) {
+    const auto samples = slab.field().at_index(D - 1, 1);
+    Step upper{mask_of(samples), {}, {}};
     const bool has_missing = lower.mask->has_missing() || upper.mask->has_missing();
-    if (candidates_ && !has_missing) {
-      Crossings<D> crossings(samples.field(), isovalue_, lower.mask, upper.mask);
-      if (!crossings.has_ties()) {
-        std::vector<GridEdge> candidates = candidates_->find(crossings);
-        Slab<D> slab(std::make_unique<MaskedCells<D>>(*table_, options_.method, std::move(crossings)));
-        describe(slab, samples);
-        return std::make_unique<Sweep<D>>(std::move(slab), lower_time, upper_time, lower.pieces(),
-                                          std::move(candidates));
-      }
+    std::optional<Crossings<D>> crossings;
+    std::vector<GridEdge> candidates;
+    Status surface;
+    run_tasks(
+        threads(), [&] { surface = add_surface(samples, upper); },
+        [&] {
+          if (!candidates_ || has_missing) return;
+          crossings.emplace(slab.field(), isovalue_, lower.mask, upper.mask);
+          if (crossings->has_ties())
+            crossings.reset();
+          else
+            candidates = candidates_->find(*crossings);
+        },
+        [&] { add_regions(samples, upper); });
+    if (!surface) return surface.error();
+    if (crossings) {
+      Slab<D> part(std::make_unique<MaskedCells<D>>(*table_, options_.method, std::move(*crossings)));
+      describe(part, slab);
+      return Advance{std::move(upper), std::make_unique<Sweep<D>>(std::move(part), lower_time, upper_time,
+                                                                  lower.pieces(), std::move(candidates))};
     }
     ExtractOptions options = options_;
     options.precision = Precision::f32; // of positions that nobody reads
-    auto mesh = extract(samples.field(), isovalue_, options);
+    auto mesh = extract(slab.field(), isovalue_, options);
     if (!mesh) return mesh.error();
-    auto slab = make_slab(samples, std::move(*mesh), has_missing);
-    if (!slab) return slab.error();
-    return std::make_unique<Sweep<D>>(std::move(*slab), lower_time, upper_time);
+    auto whole = make_slab(slab, std::move(*mesh), has_missing);
+    if (!whole) return whole.error();
+    return Advance{std::move(upper), std::make_unique<Sweep<D>>(std::move(*whole), lower_time, upper_time)};
   }
 
  private:
+  int threads() const { return worker_count(options_.threads); }
+
+  std::shared_ptr<const StepMask> mask_of(const FieldView<const T, D - 1>& samples) const {
+    return std::make_shared<const StepMask>(samples, isovalue_, options_.inside);
+  }
+  Status add_surface(const FieldView<const T, D - 1>& samples, Step& step) {
+    ExtractOptions options = options_;
+    options.precision = Precision::f64;
+    options.workspace = &workspace_;
+    options.threads = std::max(1, threads() - 1); // others are busy beside it
+    EngineOptions with_masks;
+    if (!step.mask->has_missing()) with_masks.given_masks = {step.mask->row(0), step.mask->uniform()};
+    SimplexMesh<D - 1> mesh;
+    if (Status status = extract_with(samples, isovalue_, options, with_masks, mesh); !status) return status;
+    if (mesh.vertex_count() > UINT32_MAX)
+      return Error{Code::out_of_memory, "the surface at a step has more than 2^32 vertices"};
+    step.surface =
+        std::make_shared<const StepSurface<D - 1>>(std::move(mesh), static_cast<GridEdge>(samples.dims()[0]));
+    return {};
+  }
+  void add_regions(const FieldView<const T, D - 1>& samples, Step& step) const {
+    if (wants_regions_)
+      step.regions = std::make_shared<const Regions<D - 1>>(samples, *step.mask, options_.method);
+  }
+
   double isovalue_;
   ExtractOptions options_;
+  bool wants_regions_;
   Workspace workspace_; // of the surfaces at steps
   const MarchTable<D>* table_ = nullptr;
   std::optional<CandidateSearch<D>> candidates_;

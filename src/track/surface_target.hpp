@@ -34,21 +34,22 @@ class SurfaceTarget {
 
   SurfaceTarget(double isovalue, const TrackOptions& options)
       : isovalue_(isovalue), extraction_(options.extraction),
-        exact_(options.overlap_volumes == OverlapVolumes::exact), steps_(isovalue, options.extraction) {}
+        exact_(options.overlap_volumes == OverlapVolumes::exact),
+        steps_(isovalue, options.extraction, options.measure_features) {}
 
-  Result<Step> step(const FieldView<const T, D - 1>& samples) { return steps_.step(samples); }
+  Result<Step> first_step(const FieldView<const T, D - 1>& samples) { return steps_.first_step(samples); }
 
-  Result<std::unique_ptr<Sweep<D>>> between(const FieldView<const T, D>& two_steps, const Step& lower,
-                                            const Step& upper, double lower_time, double upper_time) {
-    return steps_.between(SlabSamples<T, D>(two_steps, isovalue_), lower, upper, lower_time, upper_time);
+  auto advance(const FieldView<const T, D>& two_steps, const Step& lower, double lower_time,
+               double upper_time) {
+    return steps_.advance(SlabSamples<T, D>(two_steps, isovalue_), lower, lower_time, upper_time);
   }
 
   // The rows of the lower or upper one of two steps, measured into `features`.
   std::unique_ptr<Rows> rows(const FieldView<const T, D>& two_steps, bool upper, const Step& step,
                              const Level<D>& level, std::vector<Feature>& features) const {
     const auto samples = two_steps.at_index(D - 1, upper ? 1 : 0);
-    auto rows = std::make_unique<Rows>(samples, *step.mask, SlabSamples<T, D>(two_steps, isovalue_), upper,
-                                       extraction_.method, level);
+    auto rows =
+        std::make_unique<Rows>(samples, step.regions, SlabSamples<T, D>(two_steps, isovalue_), upper, level);
     features = rows->measure(step.surface->mesh, step.surface->pieces, level);
     if (exact_) rows->shape = shape_of(samples, *rows);
     return rows;

@@ -30,22 +30,25 @@ class TrackingRun {
   }
 
   Result<TrackingGraph> run() {
+    if (const Status read = window_.read(0); !read) return read.error();
+    auto first = target_.first_step(window_.step());
+    if (!first) return first.error();
+    step_ = std::move(*first);
     std::unique_ptr<Sweep<C>> lower;
-    if (const Status read = read_step(0); !read) return read.error();
     for (std::int64_t step = 0; step + 1 < graph_.steps; ++step) {
-      if (const Status read = read_step(step + 1); !read) return read.error();
-      auto made = target_.between(window_.slab(), this_step_, next_step_, time(step), time(step + 1));
-      if (!made) return made.error();
-      std::unique_ptr<Sweep<C>> upper = std::move(*made);
+      if (const Status read = window_.read(step + 1); !read) return read.error();
+      auto next = target_.advance(window_.slab(), step_, time(step), time(step + 1));
+      if (!next) return next.error();
+      std::unique_ptr<Sweep<C>> upper = std::move(next->between);
       if (const Status passed = pass_step(step, lower.get(), upper.get()); !passed) return passed.error();
       upper->run(builder_);
       lower = std::move(upper);
+      step_ = std::move(next->step);
       if (options_.extraction.progress &&
           !options_.extraction.progress(static_cast<double>(step + 1) /
                                         static_cast<double>(graph_.steps - 1)))
         return Error{Code::cancelled, "tracking was cancelled"};
     }
-    this_step_ = next_step_;
     if (const Status passed = pass_step(graph_.steps - 1, lower.get(), nullptr); !passed)
       return passed.error();
     assign_tracks(graph_);
@@ -55,24 +58,15 @@ class TrackingRun {
  private:
   double time(std::int64_t step) const { return graph_.axes.back().coordinate(step); }
 
-  Status read_step(std::int64_t step) {
-    this_step_ = std::move(next_step_);
-    if (const Status read = window_.read(step); !read) return read;
-    auto made = target_.step(window_.step());
-    if (!made) return made.error();
-    next_step_ = std::move(*made);
-    return {};
-  }
-
   Status pass_step(std::int64_t step, Sweep<C>* lower, Sweep<C>* upper) {
-    Level<C> level(lower, upper, this_step_.pieces());
+    Level<C> level(lower, upper, step_.pieces());
     links_.pass_events();
     level.resolve(time(step), builder_);
     if (!options_.measure_features) return {};
 
     const bool last = !upper;
     std::vector<Feature> features;
-    std::unique_ptr<Rows> rows = target_.rows(window_.slab(), last, this_step_, level, features);
+    std::unique_ptr<Rows> rows = target_.rows(window_.slab(), last, step_, level, features);
     for (const FieldBeside& field : options_.with)
       if (const Status added = add_with(*field.source, step, *rows, features); !added) return added;
     add_features(step, std::move(features));
@@ -134,7 +128,7 @@ class TrackingRun {
   const TrackOptions& options_;
   Target target_;
   StepWindow<T, D> window_;
-  typename Target::Step this_step_, next_step_;
+  typename Target::Step step_; // that is passed next
   TrackingGraph graph_;
   GraphBuilder builder_;
   LinkTracer links_;
