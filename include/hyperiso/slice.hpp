@@ -125,7 +125,7 @@ class SliceIndex {
 
   /// `slice(mesh, plane, options)`, its vertices and simplices in the order of the index. Requires the mesh
   /// of the constructor, unchanged. May be called from several threads at once.
-  /// Cost: 10 nanoseconds for each chunk of several hundred simplices, and then 10 to 20 for each simplex of
+  /// Cost: 10 nanoseconds for each chunk of several hundred simplices, and then 15 to 50 for each simplex of
   /// the cut. A plane that holds samples costs about a microsecond for each simplex of the cut.
   Result<SimplexMesh<D - 1, K - 1>> slice(const SimplexMesh<D, K>& mesh, const Hyperplane<D>& plane,
                                           const SliceOptions& options = {}) const;

@@ -41,13 +41,31 @@ class CutPlane {
       for (std::size_t i = 0; i < count; ++i) distances[i] = static_cast<double>(along[i]) - plane_.offset;
       return;
     }
-    for (std::size_t i = 0; i < count; ++i) distances[i] = -plane_.offset;
-    for (std::size_t k = 0; k < D; ++k)
-      for (std::size_t i = 0; i < count; ++i)
-        distances[i] += plane_.normal[k] * static_cast<double>(positions[k * count + i]);
+    const Hyperplane<D> plane = plane_; // so that it stays in registers
+    for (std::size_t i = 0; i < count; ++i) {
+      double distance = -plane.offset;
+      for (std::size_t k = 0; k < D; ++k)
+        distance += plane.normal[k] * static_cast<double>(positions[k * count + i]);
+      distances[i] = distance;
+    }
   }
   std::array<double, D - 1> coordinates(const std::array<double, D>& point) const {
     return across_ ? without(point, *across_) : frame_.coordinates(point);
+  }
+  // The same of several points, given and found axis by axis: to the same bits.
+  template <std::size_t N>
+  void coordinates_all(const std::array<std::array<double, N>, D>& points,
+                       std::array<std::array<double, N>, D - 1>& coordinates) const {
+    if (across_) {
+      for (int from = 0, to = 0; from < D; ++from)
+        if (from != *across_) coordinates[to++] = points[from];
+      return;
+    }
+    for (std::size_t row = 0; row < D - 1; ++row) {
+      coordinates[row].fill(0);
+      for (std::size_t k = 0; k < D; ++k)
+        for (std::size_t i = 0; i < N; ++i) coordinates[row][i] += frame_.rows[row][k] * points[k][i];
+    }
   }
   // Across an axis: where it is, and the plane next to it that points on this one lie before.
   double value() const { return plane_.offset; }
@@ -62,13 +80,13 @@ class CutPlane {
   bool meets(const std::array<double, D>& low, const std::array<double, D>& high) const {
     double least = -plane_.offset, most = -plane_.offset;
     for (int k = 0; k < D; ++k) {
-      const double a = plane_.normal[k] * low[k], b = plane_.normal[k] * high[k];
-      least += std::min(a, b);
-      most += std::max(a, b);
+      const bool rises = plane_.normal[k] >= 0;
+      least += plane_.normal[k] * (rises ? low[k] : high[k]);
+      most += plane_.normal[k] * (rises ? high[k] : low[k]);
     }
     // Sums of the corners' products round like this one or better; the margin covers what they may differ.
     const double margin = 1e-12 * (std::abs(least) + std::abs(most) + std::abs(plane_.offset));
-    return least <= margin && most >= -margin;
+    return (least <= margin) & (most >= -margin);
   }
 
  private:
@@ -201,6 +219,28 @@ struct PointOnEdge {
     for (int k = 0; k < D; ++k) point[k] = lower[k] + weight * (upper[k] - lower[k]);
     coordinates = plane.coordinates(point);
   }
+};
+
+// Several of them at once, to the same bits.
+template <int D, class Real>
+struct EdgeBatch {
+  static constexpr std::size_t size = 16;
+  std::array<std::array<Real, size>, D> lower, upper;
+  std::array<double, size> lower_beyond, upper_beyond, weights;
+  std::array<std::array<double, size>, D - 1> coordinates;
+
+  void place(const CutPlane<D>& plane) {
+    for (std::size_t i = 0; i < size; ++i) weights[i] = lower_beyond[i] / (lower_beyond[i] - upper_beyond[i]);
+    for (std::size_t k = 0; k < D; ++k)
+      for (std::size_t i = 0; i < size; ++i) {
+        const auto from = static_cast<double>(lower[k][i]), to = static_cast<double>(upper[k][i]);
+        points_[k][i] = from + weights[i] * (to - from);
+      }
+    plane.coordinates_all(points_, coordinates);
+  }
+
+ private:
+  std::array<std::array<double, size>, D> points_;
 };
 
 // Places the vertices of a cut: their coordinates in the plane, and their weights from the lower end of their

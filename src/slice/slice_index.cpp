@@ -1,15 +1,8 @@
-// Many cuts of one mesh. The simplices lie in chunks, in the order of their places; a chunk has its vertices
-// and edges in lists of its own, small enough for the first cache, numbered in a byte and in two. A cut of a
-// chunk is a few loops without branches: on which side of the plane the vertices are, which edges are
-// crossed, which simplices are cut, and their pieces by table.
-//
-// An edge that several chunks share belongs to the first of them, where it comes before the edges that belong
-// to others. Chunks are cut in their order; so where a chunk finds such an edge crossed, its vertex has been
-// numbered already.
+// Many cuts of one mesh: its simplices put in order and parted into chunks.
 
 #include "core/text.hpp"
 #include "slice/check_plane.hpp"
-#include "slice/cut.hpp"
+#include "slice/chunk_cutter.hpp"
 #include "slice/trace.hpp"
 
 #include <algorithm>
@@ -20,22 +13,6 @@
 
 namespace hyperiso {
 namespace {
-
-template <int D>
-struct Box {
-  std::array<double, D> low, high;
-
-  Box() {
-    low.fill(HUGE_VAL);
-    high.fill(-HUGE_VAL);
-  }
-  void add(const std::array<double, D>& point) {
-    for (int k = 0; k < D; ++k) {
-      low[k] = std::min(low[k], point[k]);
-      high[k] = std::max(high[k], point[k]);
-    }
-  }
-};
 
 template <int D>
 std::array<double, D> position_of(const Mesh& mesh, std::uint64_t vertex) {
@@ -98,84 +75,21 @@ std::vector<std::uint64_t> simplices_in_order(const SimplexMesh<D, K>& mesh) {
   return order;
 }
 
-// The edges of a K-simplex, numbered: those of corner pairs (0, 1), (0, 2), ..., (K - 1, K).
-template <int K>
-struct SimplexEdges {
-  static constexpr std::size_t count = K * (K + 1) / 2;
-  static constexpr std::array<CornerPair, count> pairs = [] {
-    std::array<CornerPair, count> all{};
-    std::size_t number = 0;
-    for (std::uint8_t lower = 0; lower <= K; ++lower)
-      for (std::uint8_t upper = lower + 1; upper <= K; ++upper) all[number++] = {lower, upper};
-    return all;
-  }();
-};
-
-// The pieces of a cut simplex by its pattern of corners beyond the plane, each corner the number of the
-// simplex's edge it lies on; `turned`: with the other orientation.
-template <int K>
-struct PieceTable {
-  static constexpr std::size_t most_pieces = K - 1; // for K = 2, 3, 4
-  struct Entry {
-    std::uint32_t pieces = 0;
-    std::array<std::uint8_t, most_pieces * K> edges{};
-  };
-  std::array<std::array<Entry, SimplexCut<K>::patterns>, 2> entries;
-
-  PieceTable() {
-    for (unsigned pattern = 0; pattern < SimplexCut<K>::patterns; ++pattern) {
-      Entry entry;
-      for (const auto& piece : simplex_cut<K>().simplices(pattern)) {
-        for (std::size_t corner = 0; corner < K; ++corner)
-          entry.edges[entry.pieces * K + corner] = static_cast<std::uint8_t>(
-              std::ranges::find(SimplexEdges<K>::pairs, piece[corner]) - SimplexEdges<K>::pairs.begin());
-        ++entry.pieces;
-      }
-      entries[0][pattern] = entry;
-      for (std::size_t piece = 0; piece < entry.pieces; ++piece)
-        std::swap(entry.edges[piece * K], entry.edges[piece * K + 1]);
-      entries[1][pattern] = entry;
-    }
-  }
-};
-
-template <int K>
-const PieceTable<K>& piece_table() {
-  static const PieceTable<K> table;
-  return table;
-}
-
-constexpr std::size_t most_vertices = 256, most_simplices = 1024; // of a chunk
-
-// An edge of a chunk that belongs to another.
-struct ForeignEdge {
-  std::uint32_t chunk;
-  std::uint32_t edge;
-};
-
-template <int D>
-struct Chunk {
-  Box<D> box;
-  std::uint64_t first_simplex, first_vertex, first_edge, first_foreign;
-  std::uint32_t simplices, vertices, edges, owned; // the edges that belong to it come first
-};
-
 } // namespace
 
 template <int D, int K>
 struct SliceIndex<D, K>::Chunks {
-  std::vector<Chunk<D>> chunks;
+  std::vector<Chunk> chunks;
+  std::vector<Box<D>> boxes;        // of the chunks
   std::vector<std::uint64_t> order; // of each simplex: its number in the mesh
 
-  // Of the simplices: the corners, ascending, as vertices of the chunk; whether their order in the mesh is an
-  // even permutation of that; the edges of the chunk.
-  std::vector<std::array<std::uint8_t, K + 1>> corners;
-  std::vector<std::uint8_t> even;
-  std::vector<std::array<std::uint16_t, SimplexEdges<K>::count>> simplex_edges;
+  std::vector<Block<K>> blocks;
+  std::vector<VertexSet> block_vertices; // of each block
+  std::vector<std::uint16_t> even; // of each block, by bits: the simplices whose corners in ascending order
+                                   // are an even permutation of their order in the mesh
 
   std::vector<std::uint64_t> vertex_numbers; // of the vertices of the chunks, in the mesh; ascending in each
   PositionArray positions;                   // theirs, chunk by chunk, axis by axis
-  std::vector<std::array<std::uint8_t, 2>> edges;
   std::vector<ForeignEdge> foreign;
 
   explicit Chunks(const SimplexMesh<D, K>& mesh) : order(simplices_in_order(mesh)) {
@@ -184,7 +98,7 @@ struct SliceIndex<D, K>::Chunks {
       for (std::size_t number = 0; number < chunks.size(); ++number) fill(simplices, number);
     });
     positions.reset(vertex_numbers.size() * D, mesh.positions.wide());
-    for (const Chunk<D>& chunk : chunks)
+    for (const Chunk& chunk : chunks)
       for (std::size_t vertex = 0; vertex < chunk.vertices; ++vertex)
         for (std::size_t k = 0; k < D; ++k)
           positions.set(chunk.first_vertex * D + k * chunk.vertices + vertex,
@@ -194,10 +108,15 @@ struct SliceIndex<D, K>::Chunks {
     shared_edges_ = {};
   }
 
-  template <class Use>
-  void for_each_met(const CutPlane<D>& plane, Use&& use) const {
-    for (const Chunk<D>& chunk : chunks)
-      if (plane.meets(chunk.box.low, chunk.box.high)) use(chunk);
+  std::vector<std::uint32_t> met_by(const CutPlane<D>& plane) const {
+    std::vector<std::uint32_t> met(boxes.size() + 1);
+    std::size_t count = 0;
+    for (std::uint32_t chunk = 0; chunk < boxes.size(); ++chunk) {
+      met[count] = chunk;
+      count += plane.meets(boxes[chunk].low, boxes[chunk].high);
+    }
+    met.resize(count);
+    return met;
   }
 
  private:
@@ -222,7 +141,8 @@ struct SliceIndex<D, K>::Chunks {
       if (chunks.empty() || chunks.back().simplices == most_simplices ||
           vertex_numbers.size() - chunks.back().first_vertex + K + 1 > most_vertices) {
         end_vertices();
-        chunks.push_back({{}, place, vertex_numbers.size(), 0, 0, 0, 0, 0, 0});
+        chunks.push_back({place, vertex_numbers.size(), 0, 0, 0, 0, 0, 0});
+        boxes.emplace_back();
       }
       ++chunks.back().simplices;
       const auto chunk = static_cast<std::uint32_t>(chunks.size() - 1);
@@ -232,7 +152,7 @@ struct SliceIndex<D, K>::Chunks {
         if (known_[vertex] != UINT32_MAX) shared_[vertex] = true;
         known_[vertex] = chunk;
         vertex_numbers.push_back(vertex);
-        chunks.back().box.add(position_of<D>(mesh, vertex));
+        boxes.back().add(position_of<D>(mesh, vertex));
       }
     }
     end_vertices();
@@ -247,21 +167,31 @@ struct SliceIndex<D, K>::Chunks {
   // Makes the lists of a chunk.
   template <class Index>
   void fill(std::span<const Index> simplices, std::size_t number) {
-    Chunk<D>& chunk = chunks[number];
-    chunk.first_edge = edges.size();
+    Chunk& chunk = chunks[number];
     chunk.first_foreign = foreign.size();
+    chunk.first_block = blocks.size();
     const std::uint64_t* vertices = &vertex_numbers[chunk.first_vertex];
     for (std::uint32_t vertex = 0; vertex < chunk.vertices; ++vertex) known_[vertices[vertex]] = vertex;
 
     std::vector<std::array<std::uint8_t, 2>> found;                                  // the edges as they come
     std::vector<std::uint16_t> number_of(most_vertices * most_vertices, UINT16_MAX); // of pairs of vertices
-    for (std::uint64_t place = chunk.first_simplex; place < chunk.first_simplex + chunk.simplices; ++place) {
-      const SortedSimplex<std::uint64_t, K + 1> sorted(&simplices[order[place] * (K + 1)]);
-      even.push_back(sorted.even);
-      auto& local = corners.emplace_back();
-      for (std::size_t corner = 0; corner <= K; ++corner)
+    std::array<std::uint8_t, most_vertices> of_block;
+    for (std::uint32_t place = 0; place < chunk.simplices; ++place) {
+      const std::uint32_t in_block = place % block_size;
+      if (in_block == 0) {
+        blocks.emplace_back();
+        even.push_back(0);
+        of_block.fill(0);
+      }
+      const SortedSimplex<std::uint64_t, K + 1> sorted(
+          &simplices[order[chunk.first_simplex + place] * (K + 1)]);
+      even.back() |= static_cast<std::uint16_t>(sorted.even << in_block);
+      auto& local = blocks.back().corners[in_block];
+      for (std::size_t corner = 0; corner <= K; ++corner) {
         local[corner] = static_cast<std::uint8_t>(known_[sorted.corners[corner]]);
-      auto& of_simplex = simplex_edges.emplace_back();
+        of_block[local[corner]] = 1;
+      }
+      auto& of_simplex = blocks.back().edges[in_block];
       for (std::size_t edge = 0; edge < SimplexEdges<K>::count; ++edge) {
         const CornerPair pair = SimplexEdges<K>::pairs[edge];
         const std::array<std::uint8_t, 2> ends{local[pair.lower], local[pair.upper]};
@@ -272,240 +202,40 @@ struct SliceIndex<D, K>::Chunks {
         }
         of_simplex[edge] = known;
       }
+      if (in_block + 1 == block_size || place + 1 == chunk.simplices) block_vertices.emplace_back(of_block);
     }
     renumber(found, number);
   }
 
-  // Those of the chunk's own edges first.
+  // Those of the chunk's own edges first that others may know, those of others last.
   void renumber(const std::vector<std::array<std::uint8_t, 2>>& found, std::size_t number) {
-    Chunk<D>& chunk = chunks[number];
-    std::vector<std::uint16_t> renumbered(found.size());
-    std::vector<std::uint16_t> of_others;
-    std::vector<std::pair<std::uint64_t, std::uint16_t>> newly_shared;
-    for (std::size_t edge = 0; edge < found.size(); ++edge) {
+    Chunk& chunk = chunks[number];
+    std::vector<std::uint16_t> renumbered(found.size()), private_edges, of_others;
+    for (std::uint16_t edge = 0; edge < found.size(); ++edge) {
       const std::uint64_t lower = vertex_numbers[chunk.first_vertex + found[edge][0]],
                           upper = vertex_numbers[chunk.first_vertex + found[edge][1]];
-      if (shared_[lower] && shared_[upper]) {
-        const std::uint64_t shared = shared_edges_->numbers.number({lower, upper});
-        if (shared < shared_edges_->owners.size()) {
-          of_others.push_back(static_cast<std::uint16_t>(edge));
-          foreign.push_back(shared_edges_->owners[shared]);
-          continue;
-        }
-        shared_edges_->owners.push_back({static_cast<std::uint32_t>(number), chunk.owned});
+      if (!shared_[lower] || !shared_[upper]) {
+        private_edges.push_back(edge);
+        continue;
       }
-      renumbered[edge] = static_cast<std::uint16_t>(chunk.owned++);
-      edges.push_back(found[edge]);
+      const std::uint64_t known = shared_edges_->numbers.number({lower, upper});
+      if (known < shared_edges_->owners.size()) {
+        of_others.push_back(edge);
+        foreign.push_back(shared_edges_->owners[known]);
+        continue;
+      }
+      shared_edges_->owners.push_back({static_cast<std::uint32_t>(number), chunk.shared});
+      renumbered[edge] = static_cast<std::uint16_t>(chunk.shared++);
     }
-    for (const std::uint16_t edge : of_others) {
-      renumbered[edge] = static_cast<std::uint16_t>(edges.size() - chunk.first_edge);
-      edges.push_back(found[edge]);
-    }
-    chunk.edges = static_cast<std::uint32_t>(found.size());
-    for (std::uint64_t place = chunk.first_simplex; place < chunk.first_simplex + chunk.simplices; ++place)
-      for (std::uint16_t& edge : simplex_edges[place]) edge = renumbered[edge];
+    std::uint32_t next = chunk.shared;
+    for (const std::uint16_t edge : private_edges) renumbered[edge] = static_cast<std::uint16_t>(next++);
+    chunk.owned = next;
+    for (const std::uint16_t edge : of_others) renumbered[edge] = static_cast<std::uint16_t>(next++);
+    for (std::size_t block = chunk.first_block; block < blocks.size(); ++block)
+      for (auto& edges : blocks[block].edges)
+        for (std::uint16_t& edge : edges) edge = renumbered[edge];
   }
 };
-
-namespace {
-
-// A cut of the chunks that a plane meets. `Stored`: positions of the cut.
-template <int D, int K, class Chunks, class Real, class Stored>
-class ChunkCutter {
- public:
-  ChunkCutter(const Chunks& chunks, const CutPlane<D>& plane, bool welded, bool with_attributes,
-              SimplexMesh<D - 1, K - 1>& cut)
-      : chunks_(chunks), plane_(plane), table_(piece_table<K>()), welded_(welded),
-        with_attributes_(with_attributes), cut_(cut),
-        positions_(static_cast<const Real*>(chunks.positions.data())) {
-    first_number_.resize(chunks.chunks.size());
-  }
-
-  void run() {
-    chunks_.for_each_met(plane_, [&](const Chunk<D>& chunk) {
-      if (find_sides(chunk)) cut_chunk(chunk);
-    });
-  }
-
-  Array<MeshEdge<std::uint64_t>> vertices; // with attributes: the edge of the mesh that each vertex lies on,
-  Array<double> weights;                   // how far from its lower end,
-  Array<std::uint64_t> sources;            // and the simplex of the mesh that each simplex lies in
-
- private:
-  // How far the vertices lie beyond the plane; whether they lie on both sides.
-  bool find_sides(const Chunk<D>& chunk) {
-    const Real* positions = positions_ + chunk.first_vertex * D;
-    plane_.beyond_all(positions, chunk.vertices, beyond_.data());
-    unsigned all = 1, any = 0;
-    for (std::size_t vertex = 0; vertex < chunk.vertices; ++vertex) {
-      side_[vertex] = beyond_[vertex] >= 0;
-      all &= side_[vertex];
-      any |= side_[vertex];
-    }
-    return any != all;
-  }
-
-  void cut_chunk(const Chunk<D>& chunk) {
-    find_crossed_edges(chunk);
-    find_cut_simplices(chunk);
-    if (welded_) {
-      number_vertices(chunk);
-      write_welded(chunk);
-    } else {
-      write_unwelded(chunk);
-    }
-  }
-
-  void find_crossed_edges(const Chunk<D>& chunk) {
-    const std::array<std::uint8_t, 2>* edges = chunks_.edges.data() + chunk.first_edge;
-    std::size_t crossed = 0;
-    for (std::uint32_t edge = 0; edge < chunk.edges; ++edge) {
-      crossed_[crossed] = static_cast<std::uint16_t>(edge);
-      crossed += side_[edges[edge][0]] ^ side_[edges[edge][1]];
-    }
-    crossed_count_ = crossed;
-  }
-  void find_cut_simplices(const Chunk<D>& chunk) {
-    constexpr unsigned all_beyond = SimplexCut<K>::patterns - 1;
-    const auto* corners = chunks_.corners.data() + chunk.first_simplex;
-    std::size_t cut = 0;
-    for (std::uint32_t simplex = 0; simplex < chunk.simplices; ++simplex) {
-      unsigned pattern = 0;
-      for (unsigned corner = 0; corner <= K; ++corner)
-        pattern |= static_cast<unsigned>(side_[corners[simplex][corner]]) << corner;
-      cut_simplices_[cut] = static_cast<std::uint16_t>(simplex);
-      patterns_[cut] = static_cast<std::uint8_t>(pattern);
-      cut += (pattern != 0) & (pattern != all_beyond);
-    }
-    cut_count_ = cut;
-  }
-
-  PointOnEdge<D> point_on(const Chunk<D>& chunk, std::uint16_t edge) const {
-    const Real* positions = positions_ + chunk.first_vertex * D;
-    const auto [lower, upper] = chunks_.edges[chunk.first_edge + edge];
-    std::array<double, D> from, to;
-    for (std::size_t k = 0; k < D; ++k) {
-      from[k] = static_cast<double>(positions[k * chunk.vertices + lower]);
-      to[k] = static_cast<double>(positions[k * chunk.vertices + upper]);
-    }
-    return {plane_, from, beyond_[lower], to, beyond_[upper]};
-  }
-
-  // Appends the vertices on the chunk's own edges and gives all crossed edges their numbers.
-  void number_vertices(const Chunk<D>& chunk) {
-    const auto number = static_cast<std::size_t>(&chunk - chunks_.chunks.data());
-    first_number_[number] = numbers_.size();
-    numbers_.resize(numbers_.size() + chunk.edges);
-    std::uint32_t* numbers = numbers_.data() + first_number_[number];
-
-    const auto owned_end = std::lower_bound(crossed_.begin(), crossed_.begin() + crossed_count_, chunk.owned);
-    const auto owned = static_cast<std::size_t>(owned_end - crossed_.begin());
-    const std::size_t first = cut_.positions.size() / (D - 1);
-    if (first + owned > UINT32_MAX) throw std::bad_alloc();
-    cut_.positions.resize((first + owned) * (D - 1));
-    auto* to = static_cast<Stored*>(cut_.positions.data()) + first * (D - 1);
-    for (std::size_t i = 0; i < owned; ++i) {
-      const PointOnEdge<D> point = point_on(chunk, crossed_[i]);
-      for (const double coordinate : point.coordinates) *to++ = static_cast<Stored>(coordinate);
-      numbers[crossed_[i]] = static_cast<std::uint32_t>(first + i);
-      if (with_attributes_) note_vertex(chunk, crossed_[i], point.weight);
-    }
-    const ForeignEdge* foreign = chunks_.foreign.data() + chunk.first_foreign;
-    for (std::size_t i = owned; i < crossed_count_; ++i) {
-      const ForeignEdge& edge = foreign[crossed_[i] - chunk.owned];
-      numbers[crossed_[i]] = numbers_[first_number_[edge.chunk] + edge.edge];
-    }
-    numbers_.resize(first_number_[number] + chunk.owned); // those of others are needed no more
-  }
-
-  // Calls use(corners) for each cut simplex, with the numbers of the edges that the corners of its pieces lie
-  // on and how many pieces there are.
-  template <class Use>
-  void for_each_cut_simplex(const Chunk<D>& chunk, const Use& use) {
-    const auto* simplex_edges = chunks_.simplex_edges.data() + chunk.first_simplex;
-    const std::uint8_t* even = chunks_.even.data() + chunk.first_simplex;
-    const bool turns = plane_.positive() == (K == D);
-    for (std::size_t i = 0; i < cut_count_; ++i) {
-      const std::uint16_t simplex = cut_simplices_[i];
-      const auto& entry = table_.entries[(even[simplex] != 0) == turns][patterns_[i]];
-      use(simplex_edges[simplex], entry);
-      if (with_attributes_)
-        for (std::uint32_t piece = 0; piece < entry.pieces; ++piece)
-          sources.push_back(chunks_.order[chunk.first_simplex + simplex]);
-    }
-  }
-
-  static constexpr std::size_t most_corners = PieceTable<K>::most_pieces * K;
-
-  void write_welded(const Chunk<D>& chunk) {
-    const std::uint32_t* numbers =
-        numbers_.data() + first_number_[static_cast<std::size_t>(&chunk - chunks_.chunks.data())];
-    const std::size_t before = cut_.simplices.size();
-    cut_.simplices.resize(before + cut_count_ * most_corners);
-    auto* const begin = static_cast<std::uint32_t*>(cut_.simplices.data());
-    std::uint32_t* to = begin + before;
-    for_each_cut_simplex(chunk, [&](const auto& edges, const auto& entry) {
-      for (std::size_t corner = 0; corner < most_corners; ++corner)
-        to[corner] = numbers[edges[entry.edges[corner]]];
-      to += entry.pieces * K;
-    });
-    cut_.simplices.resize(static_cast<std::size_t>(to - begin));
-  }
-
-  void write_unwelded(const Chunk<D>& chunk) {
-    for (std::size_t i = 0; i < crossed_count_; ++i) {
-      const PointOnEdge<D> point = point_on(chunk, crossed_[i]);
-      for (std::size_t k = 0; k < D - 1; ++k)
-        points_[crossed_[i]][k] = static_cast<Stored>(point.coordinates[k]);
-      weights_[crossed_[i]] = point.weight;
-    }
-    const std::size_t before = cut_.positions.size();
-    cut_.positions.resize(before + cut_count_ * most_corners * (D - 1));
-    auto* const begin = static_cast<Stored*>(cut_.positions.data());
-    Stored* to = begin + before;
-    for_each_cut_simplex(chunk, [&](const auto& edges, const auto& entry) {
-      for (std::size_t corner = 0; corner < most_corners; ++corner)
-        for (std::size_t k = 0; k < D - 1; ++k)
-          to[corner * (D - 1) + k] = points_[edges[entry.edges[corner]]][k];
-      to += entry.pieces * K * (D - 1);
-      if (!with_attributes_) return;
-      for (std::size_t corner = 0; corner < entry.pieces * K; ++corner)
-        note_vertex(chunk, edges[entry.edges[corner]], weights_[edges[entry.edges[corner]]]);
-    });
-    cut_.positions.resize(static_cast<std::size_t>(to - begin));
-  }
-
-  void note_vertex(const Chunk<D>& chunk, std::uint16_t edge, double weight) {
-    const auto [lower, upper] = chunks_.edges[chunk.first_edge + edge];
-    const std::uint64_t* numbers = chunks_.vertex_numbers.data() + chunk.first_vertex;
-    vertices.push_back({numbers[lower], numbers[upper]});
-    weights.push_back(weight);
-  }
-
-  static constexpr std::size_t most_edges = most_simplices * SimplexEdges<K>::count;
-
-  const Chunks& chunks_;
-  const CutPlane<D>& plane_;
-  const PieceTable<K>& table_;
-  const bool welded_, with_attributes_;
-  SimplexMesh<D - 1, K - 1>& cut_;
-  const Real* positions_;
-
-  // Of the chunk at hand.
-  std::array<double, most_vertices> beyond_;
-  std::array<std::uint8_t, most_vertices> side_;
-  std::array<std::uint16_t, most_edges + 1> crossed_;
-  std::array<std::uint16_t, most_simplices + 1> cut_simplices_;
-  std::array<std::uint8_t, most_simplices + 1> patterns_;
-  std::array<std::array<Stored, D - 1>, most_edges> points_;
-  std::array<double, most_edges> weights_;
-  std::size_t crossed_count_ = 0, cut_count_ = 0;
-
-  Array<std::uint32_t> numbers_;            // of the vertices on the own edges of the chunks so far
-  std::vector<std::uint64_t> first_number_; // of each of these chunks
-};
-
-} // namespace
 
 template <int D, int K>
 SliceIndex<D, K>::SliceIndex(const SimplexMesh<D, K>& mesh) : chunks_(std::make_shared<const Chunks>(mesh)) {}
@@ -518,10 +248,11 @@ Status SliceIndex<D, K>::slice_into(const SimplexMesh<D, K>& mesh, const Hyperpl
     const CutPlane<D> plane(mesh, hyperplane, options.frame);
     if (const auto layer = layer_in(mesh, hyperplane)) {
       const auto met = [&](auto&& use) {
-        chunks_->for_each_met(plane, [&](const Chunk<D>& chunk) {
+        for (const std::uint32_t number : chunks_->met_by(plane)) {
+          const Chunk& chunk = chunks_->chunks[number];
           for (std::uint32_t simplex = 0; simplex < chunk.simplices; ++simplex)
             use(chunks_->order[chunk.first_simplex + simplex]);
-        });
+        }
       };
       cut = Trace<D, K>(mesh, *layer, met).mesh(options);
       return {};
