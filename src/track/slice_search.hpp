@@ -19,10 +19,18 @@ struct Slice {
   bool is_after(Vertex vertex) const {
     return direction == Direction::after ? slab.time(vertex) > moment : slab.time(vertex) >= moment;
   }
+  // Calls use(before, after) for the edges between corners that cross the slice.
+  template <class Corners, class Use>
+  void for_each_edge_of(const Corners& corners, Use&& use) const {
+    for (const Vertex before : corners)
+      if (!is_after(before))
+        for (const Vertex after : corners)
+          if (is_after(after)) use(before, after);
+  }
 };
 
 // What a search passes: parts of a slice, numbered, which hang together where they share an edge of M that
-// crosses it. First the simplices that meet it.
+// crosses it. Here these are the simplices that meet it.
 template <int C>
 struct PartsOfSlice : Slice<C> {
   static constexpr bool of_rim = false;
@@ -30,11 +38,7 @@ struct PartsOfSlice : Slice<C> {
   // Calls use(before, after) for the edges of a part that cross the slice.
   template <class Use>
   void for_each_edge(std::uint32_t part, Use&& use) const {
-    const auto corners = this->slab.simplex(part);
-    for (const Vertex before : corners)
-      if (!this->is_after(before))
-        for (const Vertex after : corners)
-          if (this->is_after(after)) use(before, after);
+    this->for_each_edge_of(this->slab.simplex(part), use);
   }
   // Calls use(part) for the parts around an edge that crosses the slice.
   template <class Use>
@@ -53,11 +57,7 @@ struct PartsOfRims : Slice<4> {
 
   template <class Use>
   void for_each_edge(std::uint32_t part, Use&& use) const {
-    const auto corners = triangle(part);
-    for (const Vertex before : corners)
-      if (!is_after(before))
-        for (const Vertex after : corners)
-          if (is_after(after)) use(before, after);
+    for_each_edge_of(triangle(part), use);
   }
   template <class Use>
   void for_each_around(Vertex before, Vertex after, Use&& use) const {
