@@ -119,8 +119,8 @@ class SlabBySlab(Case):
 
     def beside_the_program(self, kibibytes):
         """--memory for that much beside what the program itself holds, which differs from system to system."""
-        held = re.search(r"holds ([0-9.]+) MiB", Run("extract", self.field, "--iso", "0.5", "--memory", "1K").err)
-        return "--memory", f"{int(float(held[1]) * 1024) + kibibytes}K"
+        held = re.search(r"holds ([0-9.]+) ([KM])iB", Run("extract", self.field, "--iso", "0.5", "--memory", "1K").err)
+        return "--memory", f"{int(float(held[1]) * {'K': 1, 'M': 1024}[held[2]]) + kibibytes}K"
 
     def assert_same(self, *arguments, suffix=".vtu", memory=SMALL):
         whole = self.ok("extract", *arguments, "--json", "-o", "whole" + suffix).json()
