@@ -103,6 +103,36 @@ TEST(TrackLocal, random_fields_family_by_family) {
   }
 }
 
+// From the cell that each track names: its family.
+template <int D>
+void expect_families(const std::array<std::int64_t, D>& dims, int range, unsigned seed, Method method) {
+  const Field field = time_field<float, D>(check::random_field<float, D>(dims, range, seed));
+  TrackOptions options;
+  options.extraction.method = method;
+  FieldSteps steps(field);
+  for (const double isovalue : {0.0, 0.5}) {
+    const auto whole = track_field(field, isovalue, options);
+    const auto everything = events_of(whole, all_families(whole));
+    for (const auto& track : whole.tracks) {
+      const auto local = track_from_seeds(steps, isovalue, {track.cell}, options);
+      ASSERT_TRUE(local) << local.error().message;
+      const auto events = events_of(local->graph, all_families(local->graph));
+      // A cell may hold pieces of several families.
+      EXPECT_TRUE(std::ranges::includes(events, events_of(whole, {track.family}))) << "seed " << seed;
+      EXPECT_TRUE(std::ranges::includes(everything, events)) << "seed " << seed;
+    }
+  }
+}
+
+TEST(TrackLocal, the_family_of_every_track_of_random_fields) {
+  for (const Method method : {Method::hull, Method::simplicial})
+    for (const int range : {1, 4, 1000})
+      for (unsigned seed = 0; seed < 4; ++seed) {
+        expect_families<3>({5, 5, 5}, range, seed, method);
+        if (seed < 2) expect_families<4>({4, 3, 3, 3}, range, seed, method);
+      }
+}
+
 TEST(TrackLocal, a_seed_off_the_surface_is_an_error) {
   FieldSteps steps(blobs());
   EXPECT_FALSE(track_from_seeds(steps, 0.5, {{0, 0, 0}}));

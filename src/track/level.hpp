@@ -316,12 +316,13 @@ class Level {
       Slab<C>& slab = level_.upper_->slab;
       return slab.place(slab.edge(vertex));
     }
-    // The samples of the step are those of the upper slab, if there is one.
+    // The samples of the step are those of the upper slab, if there is one that has any.
     Place place_in_lower(Vertex vertex) const {
       Slab<C>& slab = level_.lower_->slab;
       if (!slab.in_step(vertex)) return slab.place_of_upper_end(slab.edge(vertex));
-      return level_.upper_ ? level_.upper_->slab.place(slab.edge(vertex) - slab.step_offset)
-                           : slab.place(slab.edge(vertex));
+      return level_.upper_ && level_.upper_->slab.place
+                 ? level_.upper_->slab.place(slab.edge(vertex) - slab.step_offset)
+                 : slab.place(slab.edge(vertex));
     }
 
     bool is_critical(std::optional<Vertex> lower, std::optional<Vertex> upper) const {
