@@ -36,7 +36,7 @@ class Landmarks {
   Landmarks(const Crossings<D>& crossings, Method method, double moment, Direction direction, bool of_rim)
       : dims_(crossings.dims()) {
     const StepMask &lower = crossings.lower(), &upper = crossings.upper();
-    std::vector<std::uint64_t> inside(lower.row(0), lower.row(lower.rows()));
+    std::vector<std::uint64_t> inside(lower.row(0), lower.row(0) + lower.rows() * lower.words());
     std::size_t number = 0;
     for (std::size_t word = 0; word < inside.size(); ++word)
       for (std::uint64_t changed = inside[word] ^ upper.row(0)[word]; changed != 0; changed &= changed - 1) {
