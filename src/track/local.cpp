@@ -229,6 +229,7 @@ class LocalRun {
     for (std::int64_t number = first; number <= last; ++number) {
       const auto trace = traces_.find(number);
       Slab<D> slab;
+      slab.has_missing = true; // beside missing samples a family may end at a step that it reaches
       if (trace != traces_.end()) slab = std::move(*trace->second.slab);
       auto upper = std::make_unique<Sweep<D>>(std::move(slab), time(number), time(number + 1));
       if (lower || number == 0) Level<D>(lower.get(), upper.get()).resolve(time(number), builder_);
