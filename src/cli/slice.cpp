@@ -137,6 +137,9 @@ void make_cuts(const Slice& options, const Plan& plan, std::vector<Outcome>& out
     outcome.coordinates = plane_coordinates(plane, frame);
     outcome.vertices = mesh.vertex_count();
     outcome.simplices = mesh.simplex_count();
+    if (outcome.simplices == 0 && !options.printing.quiet)
+      print_warning(
+          "the plane meets no part of the surface; 'hyperiso info' tells the ranges of axes and values");
     if (options.measure) outcome.measure = take(measure(mesh));
     if (outcome.path.empty()) continue;
     const Stopwatch writing;
@@ -398,7 +401,9 @@ Command slice_command(CLI::App& program) {
         "slice INPUT... --axis NAME=V[,V...] [options]", "slice INPUT... --plane N,...,C [options]"},
        {"Cuts a 4D isosurface into triangles in space: the surface at time T, between the stored steps as "
         "well as on them, or on any other plane, and a mesh of tetrahedra as 'hyperiso interval' makes it. A "
-        "cut at a stored step is exactly the isosurface of that step. 3D surfaces are cut into segments. "
+        "cut at a stored step is exactly the isosurface of that step, as far as the surface through time has "
+        "it: where samples before or after are missing it may end earlier in the cut of a mesh. 3D surfaces "
+        "are cut into segments. "
         "What "
         "the vertices of a mesh carry comes along; cuts by oblique planes have the time of their vertices as "
         "data.",

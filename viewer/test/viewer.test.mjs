@@ -738,6 +738,20 @@ describe("what goes wrong is said", () => {
 });
 
 describe("on a phone", () => {
+  // The name of a file is the title where no other is given, and has no place to break.
+  for (const width of [320, 390, 1200])
+    test(`a long title at ${width} pixels leaves the buttons where they are`, async () => {
+      const { page, close } = await open("blobs.html", { width, height: 720 });
+      const places = () => page.evaluate(() => [...document.querySelectorAll(".corner button")].map((one) => one.getBoundingClientRect().right));
+      const before = await places();
+      await page.evaluate(() => (document.getElementById("title").textContent = "alpha_water_24x24x24x41_".repeat(9)));
+      assert.deepEqual(await places(), before);
+      assert.ok(before.every((right) => right <= width), before.join());
+      assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+      const bottom = await page.evaluate(() => document.getElementById("title").getBoundingClientRect().height);
+      assert.ok(bottom < 60, String(bottom));
+      await close();
+    });
   for (const width of [320, 390])
     test(`${width} pixels wide: nothing is cut off, controls open and close`, async () => {
       const { page, problems, close } = await open("tracks.html", { width, height: 720, touch: true });
