@@ -9,9 +9,7 @@
 namespace hyperiso {
 namespace {
 
-constexpr std::size_t page = 4096, huge_page = std::size_t{2} << 20;
-
-bool takes_huge_pages(std::size_t bytes) { return bytes >= 2 * huge_page; }
+constexpr std::size_t huge_page = std::size_t{2} << 20;
 
 std::size_t rounded_up(std::size_t bytes, std::size_t unit) {
   if (bytes > SIZE_MAX - unit) throw std::bad_alloc();
@@ -28,16 +26,10 @@ bool move_pages(void*, void*, std::size_t) { return false; }
 
 #else
 
-// Large blocks come from mmap, so that freed they go back to the system and leave no holes in the heap; very
-// large ones aligned to huge pages and advised to use them. Small ones come from operator new.
-bool is_mapped(std::size_t capacity) { return capacity >= huge_page / 4; }
+// Large blocks come from mmap, aligned to huge pages and advised to use them; small ones from operator new.
+bool is_mapped(std::size_t capacity) { return capacity >= 2 * huge_page; }
 
 void* map(std::size_t capacity) {
-  if (!takes_huge_pages(capacity)) {
-    void* data = mmap(nullptr, capacity, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (data == MAP_FAILED) throw std::bad_alloc();
-    return data;
-  }
   if (capacity > SIZE_MAX - huge_page) throw std::bad_alloc();
   const std::size_t length = capacity + huge_page;
   void* mapped = mmap(nullptr, length, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -78,7 +70,7 @@ void* allocate(std::size_t capacity) {
 
 // How many bytes to ask for where `bytes` are needed.
 std::size_t capacity_for(std::size_t bytes) {
-  return rounded_up(bytes, !is_mapped(bytes) ? 64 : takes_huge_pages(bytes) ? huge_page : page);
+  return is_mapped(bytes) ? rounded_up(bytes, huge_page) : rounded_up(bytes, 64);
 }
 
 } // namespace
