@@ -187,7 +187,7 @@ struct LocalTracking {
 /// Tracks only the components that pass the seed cells (a cell by the indices of its lowest corner, time
 /// last), and all that they come from and turn into: the families of these, as `track` finds them. Goes
 /// forward and backward in time from slab to slab, and only along the surface: cost follows the family, not
-/// the field, at some 70 ns for each simplex that it has with `hull` (paper 003 section 3.1). Features are
+/// the field, at some 45 ns for each simplex that it has with `hull` (paper 003 section 3.1). Features are
 /// not measured: `features`, `links` and `pieces` stay empty, and at merges and splits the older track goes
 /// on.
 ///
