@@ -8,7 +8,7 @@ import re
 import struct
 import unittest
 
-from cli_case import Case
+from cli_case import Case, WATER
 
 
 class SliceOfAMesh(Case):
@@ -108,6 +108,13 @@ class Slices(Case):
         for x, y, z, height in struct.iter_unpack("<4d", body[:int(re.search(rb"vertex (\d+)", header)[1]) * 32]):
             self.assertAlmostEqual(height, 2 * z)
         self.assert_refused(2, "extract", "two.vti", "--iso", "1.2", "--with", "depth", words=["depth", "height"])
+
+
+    def test_a_plane_that_meets_nothing_is_told(self):
+        run = self.ok("slice", WATER, "--iso", "0.5", "--plane", "1,1,1,1,50")
+        self.assertIn("meets no part of the surface", run.err)
+        quiet = self.ok("slice", WATER, "--iso", "0.5", "--plane", "1,1,1,1,50", "--quiet")
+        self.assertEqual(quiet.err, "")
 
 
 if __name__ == "__main__":

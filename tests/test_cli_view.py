@@ -102,6 +102,8 @@ class View(Case):
         self.assert_refused(2, "view", field, "--iso", "0.5", "--payload", "net", "-o", "a.html", words=["mesh, band and field"])
         self.assert_refused(2, "view", field, "--iso", "0.5", "--payload", "band", "--method", "barycentric", "-o", "a.html",
                             words=["barycentric"])
+        self.assert_refused(2, "view", field, "--iso", "0.5", "--colour-by", "bogus", "-o", "a.html",
+                            words=["'bogus'", "solid, component"])
         self.sample("ball", "4,4", "two.nrrd")
         self.assert_refused(2, "view", "two.nrrd", "--iso", "0.5", "-o", "a.html", words=["3 to 4"])
         self.ok("extract", field, "--iso", "0.5", "-o", "mesh.vtu")

@@ -75,7 +75,9 @@ Result<PageSurface> write_field(const Field& field, const FieldPageOptions& opti
   if (options.world) transform(mesh, *options.world);
   const Payload payload(mesh, ranges.quantisers(), options.has_time && D == 4);
 
-  Json metadata = metadata_of(D, D - 1, options, ranges, payload.quantisers(), attributes);
+  Result<Json> made = metadata_of(D, D - 1, options, ranges, payload.quantisers(), attributes);
+  if (!made) return made.error();
+  Json& metadata = *made;
   metadata["vertices"] = payload.vertex_count();
   metadata["simplices"] = payload.simplex_count();
   metadata["samples"] = samples_json(field, layers, options);

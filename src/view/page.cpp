@@ -21,8 +21,10 @@ Status write_surface(const Mesh& mesh, const PageOptions& options, bool has_leve
   if (options.tracking)
     attributes.push_back(encode_labels("track", tracks_of_vertices(mesh, *options.tracking)));
 
-  Json metadata =
+  Result<Json> made =
       metadata_of(mesh.dimension, mesh.simplex_dimension, options, ranges, payload.quantisers(), attributes);
+  if (!made) return made.error();
+  Json& metadata = *made;
   metadata["levels"] = has_levels;
   metadata["vertices"] = payload.vertex_count();
   metadata["simplices"] = payload.simplex_count();

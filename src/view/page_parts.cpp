@@ -197,8 +197,20 @@ Ranges ranges_of(const Mesh& mesh, const PageOptions& options) {
   return options.world ? in_world(std::move(ranges), *options.world) : ranges;
 }
 
-Json metadata_of(int dimension, int simplex_dimension, const PageOptions& options, const Ranges& ranges,
-                 const std::vector<Quantiser>& quantisers, const std::vector<EncodedAttribute>& attributes) {
+Result<Json> metadata_of(int dimension, int simplex_dimension, const PageOptions& options,
+                         const Ranges& ranges, const std::vector<Quantiser>& quantisers,
+                         const std::vector<EncodedAttribute>& attributes) {
+  std::vector<std::string> colourings{"solid", "component"};
+  if (options.has_time) colourings.push_back("time");
+  if (options.has_time && dimension == 4) colourings.push_back("speed");
+  for (const EncodedAttribute& attribute : attributes) colourings.push_back(attribute.name);
+  for (const Axis& axis : ranges.axes) colourings.push_back(axis.name);
+  if (!options.colour_by.empty() && std::ranges::find(colourings, options.colour_by) == colourings.end()) {
+    std::string known;
+    for (const std::string& name : colourings) known += (known.empty() ? "" : ", ") + name;
+    return Error{Code::invalid_argument,
+                 text("the page has no '", options.colour_by, "' to colour by; there are ", known)};
+  }
   Json json = {{"format", 1},
                {"title", options.title},
                {"field", options.field_name},

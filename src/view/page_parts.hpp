@@ -36,9 +36,11 @@ struct Ranges {
 // transform, all get those of the box around the moved grid, whatever surface it holds.
 Ranges ranges_of(const Mesh& mesh, const PageOptions& options);
 
-// Everything the page is told but for where its data stands.
-Json metadata_of(int dimension, int simplex_dimension, const PageOptions& options, const Ranges& ranges,
-                 const std::vector<Quantiser>& quantisers, const std::vector<EncodedAttribute>& attributes);
+// Everything the page is told but for where its data stands. invalid_argument if it has nothing of the name
+// that it is to be coloured by.
+Result<Json> metadata_of(int dimension, int simplex_dimension, const PageOptions& options,
+                         const Ranges& ranges, const std::vector<Quantiser>& quantisers,
+                         const std::vector<EncodedAttribute>& attributes);
 
 // A page being written: the viewer up to its data, the metadata, the blocks, the rest. Each block is an
 // element of its own, so that the page can say how far it has been read. Nothing is there before `finish`.
