@@ -159,17 +159,23 @@ void compare_with_stream(FieldReader& reader, double isovalue) {
   EXPECT_GE(files, 12);
 }
 
-class WaterOfTheDamBreak : public ::testing::Test {
+class RealField : public ::testing::Test {
  protected:
-  void SetUp() override {
-    auto opened = open_field(
-        {std::filesystem::path(HYPERISO_SOURCE_FOLDER) / "examples/data/alpha_water_24x24x24x41.nrrd"});
+  void read(const std::vector<std::filesystem::path>& files) {
+    auto opened = open_field(files);
     ASSERT_TRUE(opened) << opened.error().message;
     reader = std::move(*opened);
     field = *reader->read();
   }
   std::unique_ptr<FieldReader> reader;
   Field field;
+};
+
+class WaterOfTheDamBreak : public RealField {
+ protected:
+  void SetUp() override {
+    read({std::filesystem::path(HYPERISO_SOURCE_FOLDER) / "examples/data/alpha_water_24x24x24x41.nrrd"});
+  }
 };
 
 TEST_F(WaterOfTheDamBreak, surfaces) { check_surfaces(field, 0.5); }
@@ -179,7 +185,7 @@ TEST_F(WaterOfTheDamBreak, simplicial_regions) { check_regions(field, 0.5, Metho
 TEST_F(WaterOfTheDamBreak, step_by_step) { compare_with_stream(*reader, 0.5); }
 
 // 64 x 64 x 64 samples at 60 steps, beside the repository.
-class ViscousFingers : public ::testing::Test {
+class ViscousFingers : public RealField {
  protected:
   void SetUp() override {
     const char* shared = std::getenv("HYPERISO_SHARED_DATA");
@@ -190,13 +196,8 @@ class ViscousFingers : public ::testing::Test {
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) files.push_back(entry.path());
     std::ranges::sort(files);
-    auto opened = open_field(files);
-    ASSERT_TRUE(opened) << opened.error().message;
-    reader = std::move(*opened);
-    field = *reader->read();
+    read(files);
   }
-  std::unique_ptr<FieldReader> reader;
-  Field field;
 };
 
 TEST_F(ViscousFingers, surfaces) { check_surfaces(field, 30); }

@@ -91,6 +91,7 @@ TrackingGraph local_graph(const TrackedFolder& folder, StepSource& steps, TrackO
 void write_surfaces(const Track& options, const TrackingGraph& graph, SelectedSteps& steps,
                     FileGroup& files) {
   const std::filesystem::path directory = options.directory;
+  const TrackOptions tracking = options.tracking.track_options(options.surface, options.machine);
   std::vector<SeriesEntry> series;
   ProgressBar bar("write", options.printing.quiet);
   WriteMeshOptions format;
@@ -98,7 +99,6 @@ void write_surfaces(const Track& options, const TrackingGraph& graph, SelectedSt
   for (std::int64_t step = 0; step < graph.steps; ++step) {
     bar.show(static_cast<double>(step) / static_cast<double>(graph.steps));
     const Field field = take(steps.read(step, step + 1));
-    const TrackOptions tracking = options.tracking.track_options(options.surface, options.machine);
     const Mesh surface = take(tracked_surface(graph, field, step, tracking));
     const bool region = graph.tracked == Tracked::region;
     const std::string name =

@@ -7,6 +7,7 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <utility>
 #include <vector>
 
 namespace hyperiso::track_detail {
@@ -43,8 +44,8 @@ class CellLinks {
   static Signs signs_of(std::uint32_t code) {
     Signs signs;
     for (unsigned corner = 0; corner < columns; ++corner) {
-      const unsigned bit = corner >> 1 | (corner & 1) << space;
-      const unsigned below = code >> bit & 1, above = code >> (bit + (1u << (space - 1))) & 1;
+      const auto [lower, upper] = bits_of(corner);
+      const unsigned below = code >> lower & 1, above = code >> upper & 1;
       signs.below |= below << corner;
       signs.changed |= (below ^ above) << corner;
     }
@@ -137,12 +138,17 @@ class CellLinks {
     return !(differs >> axis & 1);
   }
 
+  // Of a code: the samples of a corner of space at both steps.
+  static std::pair<unsigned, unsigned> bits_of(unsigned corner) {
+    const unsigned lower = corner >> 1 | (corner & 1) << space;
+    return {lower, lower + (1u << (space - 1))};
+  }
   static std::uint32_t code_of(Signs signs) {
     std::uint32_t code = 0;
     for (unsigned corner = 0; corner < columns; ++corner) {
-      const unsigned bit = corner >> 1 | (corner & 1) << space;
+      const auto [lower, upper] = bits_of(corner);
       const unsigned below = signs.below >> corner & 1, above = below ^ (signs.changed >> corner & 1);
-      code |= below << bit | above << (bit + (1u << (space - 1)));
+      code |= below << lower | above << upper;
     }
     return code;
   }

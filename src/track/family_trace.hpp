@@ -330,35 +330,31 @@ class FamilyTrace {
 
   // The number of a cell in the slab; none if a sample is missing.
   std::size_t visit(SlabTrace& slab, const Index& at) {
+    return visit(slab, at, [&](const T* lowest) { return slab.samples->code_at(lowest); });
+  }
+  // `code_of(lowest)`: its code, if it is a new one.
+  template <class CodeOf>
+  std::size_t visit(SlabTrace& slab, const Index& at, CodeOf&& code_of) {
     const auto [number, is_new] =
         slab.number_of_cell.insert(cell_number(at), static_cast<std::uint32_t>(slab.cells.size()));
-    if (is_new) {
-      ++visited_;
-      const auto code = slab.samples->code_at(lowest_sample(slab, at));
-      if (!code) return none;
-      add_cell(slab, at, *code);
-    }
-    return number;
-  }
-  static void add_cell(SlabTrace& slab, const Index& at, std::uint32_t code) {
-    TracedCell& cell = slab.cells.emplace_back(TracedCell{at, code, 0, {}});
+    if (!is_new) return number;
+    ++visited_;
+    const std::optional<std::uint32_t> code = code_of(lowest_sample(slab, at));
+    if (!code) return none;
+    TracedCell& cell = slab.cells.emplace_back(TracedCell{at, *code, 0, {}});
     for (auto& sides : cell.beside) sides.fill(nothing);
+    return number;
   }
   // The same for the cell beside another one, which lies within the grid.
   std::size_t visit_beside(SlabTrace& slab, std::uint32_t from, std::size_t axis, unsigned side) {
     if (const std::uint32_t known = slab.cells[from].beside[axis][side]; known != nothing) return known;
     Index at = slab.cells[from].at;
     at[axis] += side == 1 ? 1 : -1;
-    const auto [number, is_new] =
-        slab.number_of_cell.insert(cell_number(at), static_cast<std::uint32_t>(slab.cells.size()));
-    if (is_new) {
-      ++visited_;
-      const auto code = slab.samples->code_beside(slab.cells[from].code, static_cast<int>(axis), side,
-                                                  lowest_sample(slab, at));
-      if (!code) return none;
-      add_cell(slab, at, *code);
-    }
-    slab.cells[from].beside[axis][side] = number;
+    const std::size_t number = visit(slab, at, [&](const T* lowest) {
+      return slab.samples->code_beside(slab.cells[from].code, static_cast<int>(axis), side, lowest);
+    });
+    if (number == none) return none;
+    slab.cells[from].beside[axis][side] = static_cast<std::uint32_t>(number);
     slab.cells[number].beside[axis][1 - side] = from;
     return number;
   }

@@ -35,6 +35,8 @@ class Landmarks {
   // crossings.
   Landmarks(const Crossings<D>& crossings, Method method, double moment, Direction direction, bool of_rim)
       : dims_(crossings.dims()) {
+    // On such a grid neighbours on walls need not share one.
+    if (of_rim && *std::min_element(dims_.begin(), dims_.end() - 1) < 3) return;
     const StepMask &lower = crossings.lower(), &upper = crossings.upper();
     std::vector<std::uint64_t> inside(lower.row(0), lower.row(0) + lower.rows() * lower.words());
     std::size_t number = 0;
@@ -53,8 +55,6 @@ class Landmarks {
       return (changed & ~joined) | (of_rim ? within(row, word) : 0);
     };
     regions_.emplace(in_space(dims_), lower.rows(), inside_at, left_out);
-    // Else neighbours on walls need not share one.
-    if (of_rim && *std::min_element(dims_.begin(), dims_.end() - 1) < 3) regions_.reset();
   }
 
   // Of the place where the slice passes the edge of the surface between its vertices on two edges of the

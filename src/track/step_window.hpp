@@ -21,15 +21,9 @@ class StepWindow {
   }
   // The step that was read last.
   FieldView<const T, D - 1> step() const {
-    FieldView<const T, D - 1> view;
-    std::int64_t stride = 1;
-    for (std::size_t axis = 0; axis + 1 < D; ++axis) {
-      view.grid.axes[axis] = axes_[axis];
-      view.strides[axis] = stride;
-      stride *= axes_[axis].count;
-    }
-    view.samples = samples_[1];
-    return view;
+    Grid<D - 1> grid;
+    std::copy_n(axes_.begin(), D - 1, grid.axes.begin());
+    return contiguous_view<const T, D - 1>(samples_[1], std::move(grid));
   }
   // That and the one before it.
   FieldView<const T, D> slab() const {
