@@ -5,6 +5,7 @@
 
 import json
 import re
+import time
 import unittest
 
 from cli_case import Case, HAS_VIEW, Run, WATER
@@ -91,6 +92,45 @@ class View(Case):
             self.sample("ball", dims, "ball.nrrd")
             self.ok("view", "ball.nrrd", "--iso", "0.5", "-o", "ball.html")
             self.assertEqual(self.metadata("ball.html")["dimension"], dims.count(",") + 1)
+
+    def test_one_step_is_the_surface_that_it_has_in_space(self):
+        step = ("--steps", "3:4", "--iso", "0.5")
+        found = {}
+        for payload in ("mesh", "band", "field") if self.has_field_pages() else ("mesh",):
+            run = self.ok("view", WATER, *step, "--payload", payload, "-o", "a.html", "--json").json()
+            page = self.metadata("a.html")
+            self.assertEqual((page["dimension"], page["time"], page["part"], run["dimension"]), (3, False, "t = 0.075", 3))
+            found[payload] = (run["vertices"], run["simplices"])
+        extracted = self.ok("extract", WATER, *step, "--json").json()
+        self.assertEqual(set(found.values()), {(extracted["vertices"], extracted["simplices"])})
+        # A plane of the volume through time, read step by step where memory is short, too.
+        plane = ("--crop", "0:24,3:4", "--iso", "0.5", "--payload", "mesh")
+        self.ok("view", WATER, *plane, "-o", "plane.html")
+        page = self.metadata("plane.html")
+        self.assertEqual((page["dimension"], page["time"], [axis["name"] for axis in page["axes"]]), (3, True, ["x", "z", "t"]))
+        self.assertTrue(page["part"].startswith("y = 0.14"), page["part"])
+        self.ok("view", WATER, "--iso", "0.5", "-o", "whole.html")
+        self.assertEqual(self.metadata("whole.html")["part"], "")
+        self.assert_refused(2, "view", WATER, *step, "--track", "-o", "b.html", words=["one step", "two or more"])
+        self.assert_refused(2, "view", WATER, *step, "--crop", "0:24,3:4", "-o", "b.html", words=["2 dimensions", "one sample"])
+
+    def test_without_a_program_that_opens_pages_it_is_written_and_that_is_said(self):
+        field = self.sample()
+        (self.folder / "bin").mkdir()
+        command = ("view", field, "--iso", "0.5", "--open", "-o", "a.html")
+        run = Run(*command, env={"PATH": str(self.folder / "bin")})
+        self.assertEqual(run.code, 0)
+        self.assertRegex(run.err, r"\Ahyperiso: warning: --open: .*xdg-open.*a\.html in a browser\n\Z")
+        self.assertTrue((self.folder / "a.html").exists())
+        self.assertEqual(Run(*command, "--quiet", env={"PATH": str(self.folder / "bin")}).err, "")
+        opener = self.folder / "bin" / "xdg-open"
+        opener.write_text('#!/bin/sh\necho "$1" >opening && mv opening opened\n')
+        opener.chmod(0o755)
+        self.ok(*command, env={"PATH": f"{self.folder}/bin:/usr/bin:/bin"})
+        end = time.monotonic() + 20  # it is not waited for
+        while not (self.folder / "opened").exists() and time.monotonic() < end:
+            time.sleep(0.01)
+        self.assertEqual((self.folder / "opened").read_text().strip(), str(self.folder.resolve() / "a.html"))
 
     def test_wrong_usage(self):
         field = self.sample()

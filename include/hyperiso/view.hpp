@@ -20,6 +20,7 @@ struct PageOptions {
                           ///< as long as the mesh
   bool has_time = false;  ///< the last axis is time
   std::string field_name; ///< empty if unknown
+  std::string part;       ///< which part of the field it is, such as "t = 0.5 s"; empty: all of it
   std::optional<double> isovalue; ///< none: not shown
   std::string colour_by; ///< what the page colours by at first: "solid", "time", "component", "track" or the
                          ///< name of an attribute; empty: the page decides

@@ -11,6 +11,7 @@
 #include "cli/tracked_folder.hpp"
 #include "core/memory.hpp"
 #include "hyperiso/track.hpp"
+#include "view/world_axis.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -55,6 +56,18 @@ std::string title_of(const View& options) {
   if (!options.title.empty()) return options.title;
   if (options.folder) return options.folder->name();
   return std::filesystem::path(options.input.paths[0]).stem().string();
+}
+
+// Where axes of one sample lie, which are left out of the surface: "t = 0.5 s".
+std::string part_of(const FieldInfo& info) {
+  std::string part;
+  for (std::size_t k = 0; k < info.axes.size(); ++k) {
+    if (info.axes[k].count != 1 || (info.world && !stands_alone(*info.world, k))) continue;
+    const Axis axis = info.world ? world_axis(info.axes[k], *info.world, k) : info.axes[k];
+    part += fmt::format("{}{} = {:.7g}{}{}", part.empty() ? "" : ", ", name_of_axis(info.axes, k),
+                        axis.coordinate(0), axis.unit.empty() ? "" : " ", axis.unit);
+  }
+  return part;
 }
 
 // Every second sample along the axes of space. Shares the samples.
@@ -177,7 +190,8 @@ void describe(const FieldInfo& info, Content& content) {
 }
 
 // Of a field that does not fit into memory, step by step; the surface has to.
-void stream_field(const View& options, std::uint64_t size, SelectedSteps& steps, Content& content) {
+void stream_field(const View& options, std::uint64_t size, SelectedSteps& selected, Content& content) {
+  StepsWithoutFlatAxes steps(selected);
   const double isovalue = *content.page.isovalue;
   ExtractOptions extraction = options.surface.extract_options(options.machine);
   extraction.keep_edges = options.track;
@@ -198,14 +212,24 @@ void stream_field(const View& options, std::uint64_t size, SelectedSteps& steps,
   if (content.mesh->simplex_count() == 0 && !options.printing.quiet)
     print_warning(why_empty(steps, isovalue));
   track_components(options, *thinned, content);
-  content.read_seconds = steps.read_seconds();
+  content.read_seconds = selected.read_seconds();
   content.extract_seconds = watch.seconds() - content.read_seconds;
   describe(thinned->info(), content);
 }
 
 Field whole_field(SelectedSteps& steps, const View& options) {
   const ProgressBar bar("read", options.printing.quiet);
-  return take(steps.read(0, steps.info().axes.back().count));
+  return without_flat_axes(take(steps.read(0, steps.info().axes.back().count)));
+}
+
+// One step of a volume is a volume, and so on.
+void check_extent(const View& options, const FieldInfo& info) {
+  const int dimension = without_flat_axes(info).dimension();
+  check_dimension(dimension, lowest_shown, highest_dimension,
+                  dimension == info.dimension() ? "the field" : "the field, without its axes of one sample,");
+  if (options.track && info.has_time && info.axes.back().count == 1)
+    fail_usage("--track: the field has one step, and components are followed from one to the next; give two "
+               "or more by --steps");
 }
 
 void read_field(const View& options, std::uint64_t size, Content& content) {
@@ -214,8 +238,8 @@ void read_field(const View& options, std::uint64_t size, Content& content) {
   const ExtractOptions extraction = options.surface.extract_options(options.machine); // told before reading
   SelectedSteps steps(options.input.open(options.machine), options.input);
   const FieldInfo& info = steps.info();
-  check_dimension(info.dimension(), lowest_shown, highest_dimension, "the field");
-  check_axes(info);
+  check_extent(options, info);
+  content.page.part = part_of(info);
   if (options.folder) options.folder->check_field(info);
   content.page.isovalue = isovalues[0];
   const bool of_surface = options.payload.empty() || options.payload == "mesh";
@@ -298,16 +322,33 @@ const char* payload_of(const Content& content) {
   return *content.samples == PageSamples::band ? "band" : "field";
 }
 
+constexpr const char* openers[] = {"xdg-open", "open"};
+
+// The system's program that opens files of any kind; empty if there is none.
+std::string opener() {
+  const char* path = std::getenv("PATH");
+  for (const char* name : openers)
+    for (const std::string& folder : split(path ? path : "", ':')) {
+      const std::string program = (std::filesystem::path(folder) / name).string();
+      if (!folder.empty() && access(program.c_str(), X_OK) == 0) return program;
+    }
+  return {};
+}
+
 // Starts the system's program for files of this kind and does not wait for it.
-void open_page(const std::string& path) {
-  const std::string absolute = std::filesystem::absolute(path).string();
+void open_page(const View& options) {
+  const std::string program = opener();
+  if (program.empty()) {
+    if (!options.printing.quiet)
+      print_warning(
+          text("--open: there is no ", openers[0], " on PATH; open ", options.path, " in a browser"));
+    return;
+  }
+  const std::string page = std::filesystem::absolute(options.path).string();
   const pid_t child = fork();
   if (child == 0) {
-    if (fork() == 0) {
-      for (const char* opener : {"xdg-open", "open"}) execlp(opener, opener, absolute.c_str(), nullptr);
-      _exit(exit_failure);
-    }
-    _exit(0);
+    if (fork() == 0) execl(program.c_str(), program.c_str(), page.c_str(), nullptr);
+    _exit(exit_failure);
   }
   if (child > 0) waitpid(child, nullptr, 0);
 }
@@ -392,7 +433,7 @@ int run(View options, const CLI::App& verb) {
   else
     write_surface(options, content);
   print_outcome(options, content, writing.seconds());
-  if (options.open) open_page(options.path);
+  if (options.open) open_page(options);
   return 0;
 }
 
@@ -447,7 +488,8 @@ Command view_command(CLI::App& program) {
        {"Writes one file that opens in any current browser, without a network: it plays the surface through "
         "time, continuously and exactly, cuts it by any hyperplane of space and time, colours it, reads "
         "points, "
-        "saves pictures and slices. Surfaces of 3D and 4D fields; interval volumes of 2D and 3D fields, "
+        "saves pictures and slices. One step (--steps 3:4) is shown as the surface that it has in space. "
+        "Surfaces of 3D and 4D fields; interval volumes of 2D and 3D fields, "
         "between whose "
         "isovalues the page slides.",
         "A page takes about 5 bytes per tetrahedron, with --payload band 0.3, with --payload field 1 to 2 "

@@ -214,6 +214,7 @@ Result<Json> metadata_of(int dimension, int simplex_dimension, const PageOptions
   Json json = {{"format", 1},
                {"title", options.title},
                {"field", options.field_name},
+               {"part", options.part},
                {"dimension", dimension},
                {"simplexDimension", simplex_dimension},
                {"time", options.has_time},

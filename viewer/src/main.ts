@@ -108,7 +108,8 @@ async function main(): Promise<void> {
   await buildIsovalue(app, source, attributes, notice);
   const subtitle = (): void => {
     element("subtitle").textContent = [metadata.field && metadata.field !== title ? metadata.field : "",
-      metadata.levels ? `isovalues ${space.axes.at(-1)!.minimum} to ${space.axes.at(-1)!.maximum}` : metadata.isovalue === undefined ? "" : `isovalue ${app.shownIsovalue}`].filter(Boolean).join(" · ");
+      metadata.levels ? `isovalues ${space.axes.at(-1)!.minimum} to ${space.axes.at(-1)!.maximum}` : metadata.isovalue === undefined ? "" : `isovalue ${app.shownIsovalue}`,
+      metadata.part].filter(Boolean).join(" · ");
   };
   subtitle();
   app.onMesh(subtitle);

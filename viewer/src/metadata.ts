@@ -64,6 +64,7 @@ export interface Metadata {
   format: 1;
   title: string;
   field: string;
+  part: string; // of the field that is shown, "t = 0.5 s"; empty: all of it
   dimension: 3 | 4;
   simplexDimension: 2 | 3;
   time: boolean; // the last axis is time

@@ -247,7 +247,7 @@ function buildAbout(app: App): void {
   element("about-text").replaceChildren();
   const lines: string[] = [];
   if (metadata.isovalue !== undefined)
-    lines.push(`Isosurface of ${metadata.field || "the field"} at ${app.shownIsovalue}.`);
+    lines.push(`Isosurface of ${metadata.field || "the field"} at ${app.shownIsovalue}${metadata.part ? `, where ${metadata.part}` : ""}.`);
   const count = (n: number): string => n.toLocaleString("en");
   const { mesh } = app;
   const kind = mesh.corners === 4 ? "tetrahedra in four dimensions" : "triangles";

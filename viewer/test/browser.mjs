@@ -1,4 +1,6 @@
 // Debian's Chromium with WebGL 2 drawn by software, driven by playwright-core.
+import { resolve } from "node:path";
+import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 
 export async function openBrowser() {
@@ -10,7 +12,7 @@ export async function openBrowser() {
   });
 }
 
-/// Opens a page file; `problems` collects what must not happen: console errors, requests to anywhere.
+/// Opens a page file, wherever its path starts; `problems` collects what must not happen: console errors, requests to anywhere.
 export async function openPage(browser, file, { width = 1040, height = 660, colorScheme = "dark", hash = "", scale = 1, touch = false } = {}) {
   const context = await browser.newContext({ viewport: { width, height }, colorScheme, deviceScaleFactor: scale, hasTouch: touch, acceptDownloads: true });
   const page = await context.newPage();
@@ -23,7 +25,7 @@ export async function openPage(browser, file, { width = 1040, height = 660, colo
   page.on("request", (request) => {
     if (!/^(file:|data:|blob:)/.test(request.url())) problems.push(`request to ${request.url()}`);
   });
-  await page.goto(`file://${file}${hash}`);
+  await page.goto(pathToFileURL(resolve(file)).href + hash);
   return { page, problems, close: () => context.close() };
 }
 

@@ -2,7 +2,6 @@
 //
 //   hyperiso view examples/data/alpha_water_24x24x24x41.nrrd --iso 0.5 --track --payload field --colour-by speed --title "Dam break" -o water.html
 //   node viewer/test/pictures.mjs water.html docs/images
-import { resolve } from "node:path";
 import { openBrowser, openPage, ready } from "./browser.mjs";
 
 const [file, folder] = process.argv.slice(2);
@@ -29,7 +28,7 @@ const pictures = [
 
 const browser = await openBrowser();
 for (const [name, options, set] of pictures) {
-  const { page, problems, close } = await openPage(browser, resolve(file), options);
+  const { page, problems, close } = await openPage(browser, file, options);
   await ready(page);
   await page.evaluate(`(${set})(window.hyperiso)`);
   await page.waitForTimeout(500); // what fades

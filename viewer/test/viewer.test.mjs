@@ -2,8 +2,8 @@
 //
 //   HYPERISO_PAGES=FOLDER node --test viewer/test      (pages by make_viewer_pages)
 import assert from "node:assert/strict";
-import { existsSync, readFileSync, writeFileSync } from "node:fs";
-import { dirname, join } from "node:path";
+import { copyFileSync, existsSync, readFileSync, writeFileSync } from "node:fs";
+import { dirname, join, relative } from "node:path";
 import { after, before, describe, test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { buildSync } from "esbuild";
@@ -485,6 +485,15 @@ describe("the page of a surface in space and time", () => {
     assert.ok(await page.isVisible("#empty"));
     await reset();
     assert.ok(await page.isHidden("#empty"));
+  });
+
+  test("its file may be named by a path from here, with any signs", async () => {
+    const file = join(folder, "100 % blobs #1.html");
+    copyFileSync(join(folder, "blobs.html"), file);
+    const { page, close } = await openPage(browser, relative(process.cwd(), file), { hash: "#at=0.5" });
+    await ready(page);
+    near(await position(page), 0.5);
+    await close();
   });
 
   test("asked nothing of the network and had no errors", () => assert.deepEqual(problems, []));
