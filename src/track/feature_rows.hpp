@@ -1,11 +1,9 @@
 #pragma once
-// What the measuring of surfaces and of regions at a step shares: the rows of its components, and their
-// cells.
+// What the measuring of surfaces and of regions at a step shares: the rows of its components.
 
 #include "hyperiso/track.hpp"
 #include "track/level.hpp"
 
-#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -32,7 +30,7 @@ class FeatureRows {
       feature.minimum = std::numeric_limits<double>::infinity();
       feature.maximum = -std::numeric_limits<double>::infinity();
     }
-    last_cell_.resize(features.size(), -1);
+    count_ = features.size();
   }
 
   // Rows without a surface at the step, where samples equal the isovalue: they are where their level is.
@@ -46,30 +44,15 @@ class FeatureRows {
     }
   }
 
-  std::size_t count() const { return last_cell_.size(); }
+  std::size_t count() const { return count_; }
   // The row of each component of the level, or SIZE_MAX.
   std::size_t row_of(std::size_t component) const { return row_of_component_[component]; }
-
-  // Counts the cell of a simplex, which come cell by cell: it begins at the lowest of the samples that the
-  // simplex's vertices lie above (`lower`).
-  template <class Vertex, class Corners>
-  void count_cell(std::size_t row, const std::vector<Vertex>& vertices, const Corners& corners,
-                  const Grid<D>& grid) {
-    std::int64_t cell = 0;
-    for (int axis = D - 1; axis >= 0; --axis) {
-      std::int32_t lowest = vertices[corners[0]].lower[axis];
-      for (const auto corner : corners) lowest = std::min(lowest, vertices[corner].lower[axis]);
-      cell = cell * grid.axes[axis].count + lowest;
-    }
-    if (last_cell_[row] != cell) ++features[row].cells;
-    last_cell_[row] = cell;
-  }
 
   std::vector<Feature> features; // of each row
 
  private:
   std::vector<std::size_t> row_of_component_;
-  std::vector<std::int64_t> last_cell_; // of each row
+  std::size_t count_ = 0;
 };
 
 } // namespace hyperiso::track_detail

@@ -57,6 +57,8 @@ class Level {
     return arcs;
   }
 
+  // Whether the components are the pieces of the surface at this step, numbered alike.
+  bool components_are_pieces() const { return pieces_ != nullptr; }
   // The component of a vertex of the surface at this step, if M has it.
   std::optional<std::size_t> component_of(const StepPieces& pieces, std::size_t vertex) const {
     if (pieces_) return pieces.piece(vertex);

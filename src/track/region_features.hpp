@@ -3,6 +3,7 @@
 
 #include "core/determinant.hpp"
 #include "hyperiso/track.hpp"
+#include "track/cell_counter.hpp"
 #include "track/feature_rows.hpp"
 #include "track/region_slab.hpp"
 #include "track/regions.hpp"
@@ -33,6 +34,7 @@ class RegionFeatures {
     mesh_ = std::move(mesh);
     rows_ = FeatureRows<D>(level);
     sums_.resize(rows_.count());
+    cells_.resize(rows_.count());
     place_vertices(pieces, level);
     find_pieces(pieces);
     for (std::size_t simplex = 0; simplex < simplex_count(); ++simplex) add_simplex(simplex);
@@ -173,7 +175,7 @@ class RegionFeatures {
     sum.volume += volume;
     sum.mass += volume * value;
     for (std::size_t axis = 0; axis < D; ++axis) sum.moment[axis] += volume * part.moment[axis];
-    rows_.count_cell(row, placed_, vertices, step_.grid);
+    rows_.features[row].cells += cells_.is_next(row, placed_, vertices);
   }
   // The Euler characteristic counts each face once; those of one simplex only are its surface, or on walls.
   void add_faces() {
@@ -251,6 +253,7 @@ class RegionFeatures {
   std::vector<PlacedVertex> placed_;
   std::vector<std::size_t> vertex_row_; // or SIZE_MAX
   std::vector<Sum> sums_;               // of each row
+  CellCounter<D> cells_;
   std::vector<RegionPiece> pieces_;
 };
 

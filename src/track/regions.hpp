@@ -36,6 +36,14 @@ class Regions {
     Kind kind;
     Region region;
   };
+  // Neighbouring rows of a plane, the rows with one index along all axes but 0 and 1: one row, or several of
+  // one run each and all of one kind, which share it.
+  struct Band {
+    std::int64_t begin, end; // along axis 1
+    std::uint32_t first_run, end_run;
+
+    bool is_uniform() const { return end_run == first_run + 1; }
+  };
 
   // What the surface of a step does not part: with `hull`, all inside samples of a cell are connected and
   // outside ones along its edges; with `simplicial` both along the edges of the Kuhn grid. `mask`: of the
@@ -43,87 +51,115 @@ class Regions {
   template <class T>
   Regions(const FieldView<const T, D>& field, const StepMask& mask, Method method)
       : dims_(field.dims()), has_missing_(mask.has_missing()) {
+    const auto is_uniform = [&](std::size_t row) { return mask.uniform(row) != 1; };
+    const auto inside = [&](std::size_t row, std::size_t word) { return mask.row(row)[word]; };
     if (has_missing_)
-      find_runs(field, mask);
+      find_bands(never, inside, missing_in(field));
     else
-      find_runs(
-          mask.rows(), [&](std::size_t row, std::size_t word) { return mask.row(row)[word]; },
-          [](std::size_t, std::size_t) { return std::uint64_t{0}; });
+      find_bands(is_uniform, inside, [](std::size_t, std::size_t) { return std::uint64_t{0}; });
     unite(reaches(method));
   }
   // Connected along the edges of the grid. `inside`, `missing`: words of the masks of these, by the row and
   // the number of the word in it.
   template <class Inside, class Missing>
-  Regions(const std::array<std::int64_t, D>& dims, std::size_t rows, Inside&& inside, Missing&& missing)
+  Regions(const std::array<std::int64_t, D>& dims, Inside&& inside, Missing&& missing)
       : dims_(dims), has_missing_(true) {
-    find_runs(rows, inside, missing);
+    find_bands(never, inside, missing);
     unite(reaches_along_edges());
   }
 
   std::size_t count() const { return kinds_.size(); }
   Kind kind(Region region) const { return kinds_[region]; }
   bool has_missing() const { return has_missing_; }
-  std::size_t rows() const { return first_.size() - 1; }
-  std::span<const Run> row(std::size_t number) const {
-    return std::span(runs_).subspan(first_[number], first_[number + 1] - first_[number]);
+
+  std::size_t planes() const { return first_band_.size() - 1; }
+  std::span<const Band> bands(std::size_t plane) const {
+    return std::span(bands_).subspan(first_band_[plane], first_band_[plane + 1] - first_band_[plane]);
+  }
+  std::span<const Run> runs(const Band& band) const {
+    return std::span(runs_).subspan(band.first_run, band.end_run - band.first_run);
   }
 
   Region at(const std::array<std::int64_t, D>& sample) const {
-    std::int64_t number = 0;
-    for (int axis = D - 1; axis > 0; --axis) number = number * dims_[axis] + sample[axis];
-    const auto runs = row(static_cast<std::size_t>(number));
-    const auto after =
-        std::ranges::upper_bound(runs, sample[0], {}, [](const Run& run) { return run.begin; });
-    return std::prev(after)->region;
+    std::int64_t plane = 0;
+    for (int axis = D - 1; axis > 1; --axis) plane = plane * dims_[axis] + sample[axis];
+    const auto in_plane = bands(static_cast<std::size_t>(plane));
+    const auto band = std::prev(std::ranges::upper_bound(in_plane, sample[1], {}, &Band::begin));
+    return std::prev(std::ranges::upper_bound(runs(*band), sample[0], {}, &Run::begin))->region;
   }
 
  private:
-  template <class Inside, class Missing>
-  void find_runs(std::size_t rows, Inside&& inside, Missing&& missing) {
-    for (std::size_t row = 0; row < rows; ++row) {
-      first_.push_back(runs_.size());
-      for (std::int64_t begin = 0; begin < dims_[0];) {
-        std::size_t word = static_cast<std::size_t>(begin / 64);
-        const auto all_if = [&](std::uint64_t bits) { return -(bits >> (begin % 64) & 1); };
-        const std::uint64_t inside_here = all_if(inside(row, word)),
-                            missing_here = all_if(missing(row, word));
-        const auto unlike = [&] {
-          return (inside(row, word) ^ inside_here) | (missing(row, word) ^ missing_here);
-        };
-        std::uint64_t other = unlike() & (~std::uint64_t{0} << (begin % 64));
-        while (other == 0 && 64 * (static_cast<std::int64_t>(word) + 1) < dims_[0]) ++word, other = unlike();
-        const std::int64_t end =
-            other == 0 ? dims_[0]
-                       : std::min(64 * static_cast<std::int64_t>(word) + std::countr_zero(other), dims_[0]);
-        const Kind kind = missing_here != 0 ? Kind::missing : inside_here != 0 ? Kind::inside : Kind::outside;
-        runs_.push_back({begin, end, kind, 0});
-        begin = end;
-      }
-    }
-    first_.push_back(runs_.size());
+  static bool never(std::size_t) { return false; }
+
+  // Words of the mask of the samples that are missing.
+  template <class T>
+  auto missing_in(const FieldView<const T, D>& field) const {
+    return [&field, dims = dims_](std::size_t row, std::size_t word) {
+      std::array<std::int64_t, D> index{};
+      auto rest = static_cast<std::int64_t>(row);
+      for (int axis = 1; axis < D; rest /= dims[axis++]) index[axis] = rest % dims[axis];
+      index[0] = 64 * static_cast<std::int64_t>(word);
+      const T* sample = &field.at(index);
+      std::uint64_t bits = 0;
+      for (std::int64_t x = index[0]; x < std::min(index[0] + 64, dims[0]); ++x, sample += field.strides[0])
+        bits |= std::uint64_t{is_missing(*sample)} << (x % 64);
+      return bits;
+    };
   }
 
-  template <class T>
-  void find_runs(const FieldView<const T, D>& field, const StepMask& mask) {
-    std::array<std::int64_t, D> index{};
-    for (std::size_t number = 0; number < mask.rows(); ++number) {
-      first_.push_back(runs_.size());
-      const T* samples = &field.at(index);
-      for (std::int64_t x = 0; x < dims_[0]; ++x) {
-        const Kind kind = mask.inside(number, static_cast<std::size_t>(x)) ? Kind::inside
-                          : is_missing(samples[x * field.strides[0]])      ? Kind::missing
-                                                                           : Kind::outside;
-        if (x == 0 || runs_.back().kind != kind) runs_.push_back({x, x, kind, 0});
-        runs_.back().end = x + 1;
+  // `is_uniform(row)`: of a row known to be all inside or all outside.
+  template <class Uniform, class Inside, class Missing>
+  void find_bands(Uniform&& is_uniform, Inside&& inside, Missing&& missing) {
+    std::size_t planes = 1, row = 0;
+    for (int axis = 2; axis < D; ++axis) planes *= static_cast<std::size_t>(dims_[axis]);
+    for (std::size_t plane = 0; plane < planes; ++plane) {
+      first_band_.push_back(bands_.size());
+      for (std::int64_t y = 0; y < dims_[1]; ++y, ++row) {
+        const auto first_run = static_cast<std::uint32_t>(runs_.size());
+        if (is_uniform(row))
+          runs_.push_back({0, dims_[0], kind_of(inside(row, 0) & 1, false), 0});
+        else
+          find_runs(row, inside, missing);
+        const Band band{y, y + 1, first_run, static_cast<std::uint32_t>(runs_.size())};
+        if (y > 0 && band.is_uniform() && bands_.back().is_uniform() &&
+            runs_[bands_.back().first_run].kind == runs_.back().kind) {
+          runs_.pop_back();
+          bands_.back().end = band.end;
+        } else {
+          bands_.push_back(band);
+        }
       }
-      for (int axis = 1; axis < D && ++index[axis] == dims_[axis]; ++axis) index[axis] = 0;
     }
-    first_.push_back(runs_.size());
+    first_band_.push_back(bands_.size());
+  }
+  static Kind kind_of(bool is_inside, bool is_missing) {
+    return is_missing ? Kind::missing : is_inside ? Kind::inside : Kind::outside;
+  }
+
+  template <class Inside, class Missing>
+  void find_runs(std::size_t row, Inside&& inside, Missing&& missing) {
+    std::uint64_t last_inside = inside(row, 0) & 1, last_missing = missing(row, 0) & 1; // samples
+    runs_.push_back({0, dims_[0], kind_of(last_inside, last_missing), 0});
+    for (std::size_t word = 0; 64 * static_cast<std::int64_t>(word) < dims_[0]; ++word) {
+      const std::uint64_t in = inside(row, word), none = missing(row, word);
+      for (std::uint64_t changes = (in ^ (in << 1 | last_inside)) | (none ^ (none << 1 | last_missing));
+           changes != 0; changes &= changes - 1) {
+        const int bit = std::countr_zero(changes);
+        const std::int64_t x = 64 * static_cast<std::int64_t>(word) + bit;
+        if (x >= dims_[0]) break;
+        const Kind kind = kind_of(in >> bit & 1, none >> bit & 1);
+        if (kind == runs_.back().kind) continue; // missing samples count as neither inside nor outside
+        runs_.back().end = x;
+        runs_.push_back({x, dims_[0], kind, 0});
+      }
+      last_inside = in >> 63;
+      last_missing = none >> 63;
+    }
   }
 
   // How far a run reaches to runs of its kind in an earlier row: from begin + low to end + high.
   struct Reach {
-    std::int64_t row_offset;
+    std::int64_t plane_offset;
     std::array<int, D> step; // along axes 1, 2, ...
     int low, high;
     Kind kind;
@@ -131,7 +167,7 @@ class Regions {
 
   Reach reach(const std::array<int, D>& step, Kind kind, int low, int high) const {
     std::int64_t offset = 0;
-    for (int axis = D - 1; axis > 0; --axis) offset = offset * dims_[axis] + step[axis];
+    for (int axis = D - 1; axis > 1; --axis) offset = offset * dims_[axis] + step[axis];
     return {offset, step, low, high, kind};
   }
   std::vector<Reach> reaches_along_edges() const {
@@ -173,22 +209,17 @@ class Regions {
     return result;
   }
 
-  void unite(const std::vector<Reach>& all) {
-    std::vector<Reach> of_outside; // most rows have nothing else
-    for (const Reach& reach : all)
-      if (reach.kind == Kind::outside) of_outside.push_back(reach);
+  void unite(const std::vector<Reach>& reaches) {
     UnionFind united(runs_.size());
-    std::array<std::int64_t, D> index{};
-    for (std::size_t number = 0; number < rows(); ++number) {
-      const bool all_outside =
-          first_[number + 1] == first_[number] + 1 && runs_[first_[number]].kind == Kind::outside;
-      for (const Reach& reach : all_outside ? of_outside : all) {
+    std::array<std::int64_t, D> index{}; // of a plane
+    for (std::size_t plane = 0; plane < planes(); ++plane) {
+      for (const Reach& reach : reaches) {
         bool exists = true;
-        for (int axis = 1; axis < D; ++axis)
+        for (int axis = 2; axis < D; ++axis)
           exists &= index[axis] + reach.step[axis] >= 0 && index[axis] + reach.step[axis] < dims_[axis];
-        if (exists) unite_rows(number, reach, united);
+        if (exists) unite_planes(plane, reach, united);
       }
-      for (int axis = 1; axis < D && ++index[axis] == dims_[axis]; ++axis) index[axis] = 0;
+      for (int axis = 2; axis < D && ++index[axis] == dims_[axis]; ++axis) index[axis] = 0;
     }
     for (std::size_t run = 0; run < runs_.size(); ++run) {
       const std::uint64_t root = united.find(run);
@@ -201,28 +232,37 @@ class Regions {
     }
   }
 
-  void unite_rows(std::size_t number, const Reach& reach, UnionFind& united) const {
-    const auto earlier = static_cast<std::size_t>(static_cast<std::int64_t>(number) + reach.row_offset);
-    if (first_[number + 1] - first_[number] == 1 && first_[earlier + 1] - first_[earlier] == 1) {
-      const std::size_t run = first_[number], other = first_[earlier]; // of whole rows
-      if (runs_[run].kind == reach.kind && runs_[other].kind == reach.kind) united.unite(run, other);
-      return;
+  void unite_planes(std::size_t plane, const Reach& reach, UnionFind& united) const {
+    const auto others =
+        bands(static_cast<std::size_t>(static_cast<std::int64_t>(plane) + reach.plane_offset));
+    auto first = others.begin();
+    for (const Band& band : bands(plane)) {
+      if (band.is_uniform() && runs_[band.first_run].kind != reach.kind) continue;
+      const std::int64_t begin = std::max<std::int64_t>(band.begin + reach.step[1], 0),
+                         end = band.end + reach.step[1];
+      while (first != others.end() && first->end <= begin) ++first;
+      for (auto other = first; other != others.end() && other->begin < end; ++other)
+        unite_rows(band, *other, reach, united);
     }
-    std::size_t other = first_[earlier];
-    for (std::size_t run = first_[number]; run < first_[number + 1]; ++run) {
+  }
+
+  void unite_rows(const Band& band, const Band& earlier, const Reach& reach, UnionFind& united) const {
+    std::uint32_t other = earlier.first_run;
+    for (std::uint32_t run = band.first_run; run < band.end_run; ++run) {
       if (runs_[run].kind != reach.kind) continue;
       const std::int64_t low = runs_[run].begin + reach.low, high = runs_[run].end + reach.high;
-      while (other > first_[earlier] && runs_[other - 1].end > low) --other;
-      while (other < first_[earlier + 1] && runs_[other].end <= low) ++other;
-      for (; other < first_[earlier + 1] && runs_[other].begin < high; ++other)
+      while (other > earlier.first_run && runs_[other - 1].end > low) --other;
+      while (other < earlier.end_run && runs_[other].end <= low) ++other;
+      for (; other < earlier.end_run && runs_[other].begin < high; ++other)
         if (runs_[other].kind == reach.kind) united.unite(run, other);
     }
   }
 
   std::array<std::int64_t, D> dims_;
   std::vector<Run> runs_;
-  std::vector<std::size_t> first_; // run of each row, and the end
-  std::vector<Kind> kinds_;        // of each region
+  std::vector<Band> bands_;
+  std::vector<std::size_t> first_band_; // of each plane, and the end
+  std::vector<Kind> kinds_;             // of each region
   bool has_missing_;
 };
 
@@ -242,23 +282,29 @@ class RegionOverlap {
     std::vector<double> up_to(share[0].size() + 1);
     for (std::size_t x = 0; x < share[0].size(); ++x) up_to[x + 1] = up_to[x] + share[0][x];
     std::array<std::size_t, D> index{};
-    for (std::size_t row = 0; row < first.rows(); ++row) {
-      double row_share = 1;
-      for (std::size_t axis = 1; axis < D; ++axis) row_share *= share[axis][index[axis]];
-      const auto in_first = first.row(row), in_second = second.row(row);
-      const bool none_wanted = (in_first.size() == 1 && !first_wanted[in_first[0].region]) ||
-                               (in_second.size() == 1 && !second_wanted[in_second[0].region]);
-      auto other = in_second.begin();
-      for (const auto& run : in_first) {
-        if (none_wanted) break;
-        while (other->end <= run.begin) ++other;
-        for (auto reached = other; reached != in_second.end() && reached->begin < run.end; ++reached)
-          if (first_wanted[run.region] && second_wanted[reached->region])
-            sizes_[key(run.region, reached->region)] +=
-                row_share * (up_to[static_cast<std::size_t>(std::min(run.end, reached->end))] -
-                             up_to[static_cast<std::size_t>(std::max(run.begin, reached->begin))]);
+    const auto any_wanted = [](const auto& runs, const std::vector<bool>& wanted) {
+      return runs.size() > 1 || wanted[runs[0].region];
+    };
+    for (std::size_t plane = 0; plane < first.planes(); ++plane) {
+      auto other = second.bands(plane).begin();
+      for (const auto& band : first.bands(plane)) {
+        const auto in_first = first.runs(band);
+        if (!any_wanted(in_first, first_wanted)) continue;
+        while (other->end <= band.begin) ++other;
+        for (auto reached = other; reached != second.bands(plane).end() && reached->begin < band.end;
+             ++reached) {
+          const auto in_second = second.runs(*reached);
+          if (!any_wanted(in_second, second_wanted)) continue;
+          for (std::int64_t y = std::max(band.begin, reached->begin); y < std::min(band.end, reached->end);
+               ++y) {
+            index[1] = static_cast<std::size_t>(y);
+            double row_share = 1;
+            for (std::size_t axis = 1; axis < D; ++axis) row_share *= share[axis][index[axis]];
+            add_row(in_first, first_wanted, in_second, second_wanted, row_share, up_to);
+          }
+        }
       }
-      for (std::size_t axis = 1; axis < D && ++index[axis] == share[axis].size(); ++axis) index[axis] = 0;
+      for (std::size_t axis = 2; axis < D && ++index[axis] == share[axis].size(); ++axis) index[axis] = 0;
     }
   }
   double of(Region first, Region second) const {
@@ -267,6 +313,21 @@ class RegionOverlap {
   }
 
  private:
+  using Runs = std::span<const typename Regions<D>::Run>;
+
+  // `up_to`: the shares of the samples of a row up to each.
+  void add_row(Runs first, const std::vector<bool>& first_wanted, Runs second,
+               const std::vector<bool>& second_wanted, double row_share, const std::vector<double>& up_to) {
+    auto other = second.begin();
+    for (const auto& run : first) {
+      while (other->end <= run.begin) ++other;
+      for (auto reached = other; reached != second.end() && reached->begin < run.end; ++reached)
+        if (first_wanted[run.region] && second_wanted[reached->region])
+          sizes_[key(run.region, reached->region)] +=
+              row_share * (up_to[static_cast<std::size_t>(std::min(run.end, reached->end))] -
+                           up_to[static_cast<std::size_t>(std::max(run.begin, reached->begin))]);
+    }
+  }
   static std::uint64_t key(Region first, Region second) { return std::uint64_t{first} << 32 | second; }
   std::unordered_map<std::uint64_t, double> sizes_;
 };

@@ -76,6 +76,7 @@ class StepPieces {
            x;
   }
   GridEdge edge_at_step(std::size_t vertex) const { return edges_[vertex]; } // as numbered at the step
+  std::uint32_t first_vertex(std::size_t piece) const { return first_[piece]; }
   GridEdge first_edge(std::size_t piece) const { return edge(first_[piece]); }
 
   // Requires that the surface crosses the edge.

@@ -4,11 +4,13 @@
 #include "core/parallel.hpp"
 #include "extract/extract_with.hpp"
 #include "track/candidates.hpp"
+#include "track/regions.hpp"
+#include "track/surface_measure.hpp"
 #include "track/sweep.hpp"
 
 namespace hyperiso::track_detail {
 
-// The surface at a step, and its pieces.
+// The surface at a step, and its pieces; measured by pieces if that is wanted and no sample is missing.
 template <int S>
 struct StepSurface {
   StepSurface(SimplexMesh<S>&& mesh_, GridEdge row_length)
@@ -16,6 +18,7 @@ struct StepSurface {
   StepSurface(const StepSurface&) = delete; // the pieces refer to the mesh
   SimplexMesh<S> mesh;
   StepPieces pieces;
+  std::optional<SurfaceMeasure<S>> measure;
 };
 
 template <class T, int D>
@@ -24,7 +27,7 @@ class SurfaceSteps {
   struct Step {
     std::shared_ptr<const StepMask> mask;
     std::shared_ptr<const StepSurface<D - 1>> surface;
-    std::shared_ptr<const Regions<D - 1>> regions; // if they are wanted
+    std::shared_ptr<const Regions<D - 1>> regions; // if features are wanted
 
     std::shared_ptr<const StepPieces> pieces() const { return {surface, &surface->pieces}; }
   };
@@ -34,8 +37,8 @@ class SurfaceSteps {
     std::unique_ptr<Sweep<D>> between;
   };
 
-  SurfaceSteps(double isovalue, const ExtractOptions& options, bool wants_regions)
-      : isovalue_(isovalue), options_(options), wants_regions_(wants_regions) {
+  SurfaceSteps(double isovalue, const ExtractOptions& options, bool wants_features)
+      : isovalue_(isovalue), options_(options), wants_features_(wants_features) {
     options_.keep_edges = true;
     options_.progress = {};
     if (options_.method != Method::simplicial) {
@@ -107,18 +110,22 @@ class SurfaceSteps {
     if (Status status = extract_with(samples, isovalue_, options, with_masks, mesh); !status) return status;
     if (mesh.vertex_count() > UINT32_MAX)
       return Error{Code::out_of_memory, "the surface at a step has more than 2^32 vertices"};
-    step.surface =
-        std::make_shared<const StepSurface<D - 1>>(std::move(mesh), static_cast<GridEdge>(samples.dims()[0]));
+    auto surface =
+        std::make_shared<StepSurface<D - 1>>(std::move(mesh), static_cast<GridEdge>(samples.dims()[0]));
+    if (wants_features_ && !step.mask->has_missing())
+      surface->measure =
+          SurfaceMeter<T, D - 1>(samples, *step.mask, isovalue_, surface->mesh, surface->pieces).by_pieces();
+    step.surface = std::move(surface);
     return {};
   }
   void add_regions(const FieldView<const T, D - 1>& samples, Step& step) const {
-    if (wants_regions_)
+    if (wants_features_)
       step.regions = std::make_shared<const Regions<D - 1>>(samples, *step.mask, options_.method);
   }
 
   double isovalue_;
   ExtractOptions options_;
-  bool wants_regions_;
+  bool wants_features_;
   Workspace workspace_; // of the surfaces at steps
   const MarchTable<D>* table_ = nullptr;
   std::optional<CandidateSearch<D>> candidates_;

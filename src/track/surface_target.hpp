@@ -20,10 +20,12 @@ class SurfaceTarget {
     // Samples are owned by regions, these by rows.
     std::vector<std::uint32_t> owner_of_sample() const {
       std::vector<std::uint32_t> owners;
-      for (std::size_t row = 0; row < this->regions().rows(); ++row)
-        for (const auto& run : this->regions().row(row))
-          owners.insert(owners.end(), static_cast<std::size_t>(run.end - run.begin),
-                        this->wanted()[run.region] ? run.region : StepShape<D - 1>::nobody);
+      for (std::size_t plane = 0; plane < this->regions().planes(); ++plane)
+        for (const auto& band : this->regions().bands(plane))
+          for (auto row = band.begin; row < band.end; ++row)
+            for (const auto& run : this->regions().runs(band))
+              owners.insert(owners.end(), static_cast<std::size_t>(run.end - run.begin),
+                            this->wanted()[run.region] ? run.region : StepShape<D - 1>::nobody);
       return owners;
     }
     std::size_t owner_count() const { return this->regions().count(); }
@@ -48,9 +50,8 @@ class SurfaceTarget {
   std::unique_ptr<Rows> rows(const FieldView<const T, D>& two_steps, bool upper, const Step& step,
                              const Level<D>& level, std::vector<Feature>& features) const {
     const auto samples = two_steps.at_index(D - 1, upper ? 1 : 0);
-    auto rows =
-        std::make_unique<Rows>(samples, step.regions, SlabSamples<T, D>(two_steps, isovalue_), upper, level);
-    features = rows->measure(step.surface->mesh, step.surface->pieces, level);
+    auto rows = std::make_unique<Rows>(samples, isovalue_, step, level);
+    features = rows->take_features();
     if (exact_) rows->shape = shape_of(samples, *rows);
     return rows;
   }

@@ -1,0 +1,40 @@
+#pragma once
+// The cells that groups of simplices lie in.
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace hyperiso::track_detail {
+
+// Counts them for simplices that come cell by cell.
+template <int D> // axes of the grid
+class CellCounter {
+ public:
+  void resize(std::size_t groups) {
+    Cell none;
+    none.fill(-1);
+    last_.assign(groups, none);
+  }
+
+  // Whether a simplex of a group lies in another cell than the one before: a cell begins at the lowest of the
+  // samples that the simplex's vertices lie above (`lower`).
+  template <class Vertex, class Corners>
+  bool is_next(std::size_t group, const std::vector<Vertex>& vertices, const Corners& corners) {
+    Cell cell = vertices[corners[0]].lower;
+    for (const auto corner : corners)
+      for (std::size_t axis = 0; axis < D; ++axis)
+        cell[axis] = std::min(cell[axis], vertices[corner].lower[axis]);
+    const bool is_next = cell != last_[group];
+    last_[group] = cell;
+    return is_next;
+  }
+
+ private:
+  using Cell = std::array<std::int32_t, D>;
+  std::vector<Cell> last_; // of each group
+};
+
+} // namespace hyperiso::track_detail
