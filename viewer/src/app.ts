@@ -1,6 +1,6 @@
 // What holds the page together: the state, and what follows from a change of it.
 import { rgb, type Rgb } from "./colours";
-import { meaningOf } from "./events";
+import { eventLines } from "./events";
 import { axisFrame, axisOf, dot, type Frame, reachOf, turnedTo } from "./frame";
 import { componentsOf, type Mesh } from "./mesh";
 import { type Metadata, samplesOf, type TrackEvent } from "./metadata";
@@ -33,9 +33,10 @@ export class App {
   readonly surface: Surface;
   readonly view: SceneView;
   readonly colourings: Colouring[];
-  private readonly allEvents: TrackEvent[]; // those to be shown, by time
+  readonly allEvents: readonly TrackEvent[]; // but for those left out as small or short, by time
+  private readonly simplified: ReadonlySet<number>; // tracks
   private readonly listeners: ((state: State, changed: Set<keyof State>) => void)[] = [];
-  private shownColour = "";
+  private shownValues = ""; // what the graphics card has of each vertex
   private components: { count: number; ofVertex: Uint32Array } | null = null;
   private playedAt = 0;
   private direction = 1;
@@ -47,9 +48,10 @@ export class App {
   constructor(public mesh: Mesh, readonly space: Space, readonly metadata: Metadata,
     private readonly isovalues: [number, number] | null) {
     this.surface = new Surface(mesh, space);
-    this.view = new SceneView(element("stage"), element("view"), element("labels"), space, this.surface);
+    this.view = new SceneView(element("stage"), element("view"), element("labels"), element("legend"), space, this.surface);
     this.allEvents = (metadata.tracking?.events ?? []).filter((event) => !event.simplified && !event.type.startsWith("open"))
       .sort((a, b) => a.time - b.time);
+    this.simplified = new Set(metadata.tracking?.tracks.filter((track) => track.simplified).map((track) => track.id));
     this.colourings = this.listColourings();
     this.initial = this.valid(initialState(metadata, space));
     this.state = this.initial;
@@ -75,9 +77,11 @@ export class App {
 
   private valid(state: State): State {
     const known = this.colourings.some((one) => one.key === state.colour);
-    const [low, high] = this.isovalues ?? [state.isovalue, state.isovalue];
-    const isovalue = this.isovalues ? Math.max(low, Math.min(high, state.isovalue)) : this.metadata.isovalue ?? 0;
-    return { ...state, isovalue, colour: known ? state.colour : "solid" };
+    const own = this.metadata.isovalue ?? 0; // which may be none of the samples'
+    const [low, high] = this.isovalues ?? [own, own];
+    const isovalue = Math.max(Math.min(low, own), Math.min(Math.max(high, own), state.isovalue));
+    const hide = state.hide.split(",").filter((type) => this.allEvents.some((event) => event.type === type)).join();
+    return { ...state, isovalue, hide, colour: known ? state.colour : "solid" };
   }
 
   /// Shows another surface: that of the same field at another isovalue.
@@ -85,7 +89,7 @@ export class App {
     this.mesh = mesh;
     this.shownIsovalue = isovalue;
     this.components = null;
-    this.shownColour = "";
+    this.shownValues = "";
     this.surface.replace(mesh);
     this.view.setFrame(this.state.frame, this.state.offset);
     this.view.marker = null;
@@ -100,8 +104,24 @@ export class App {
   get isOwnSurface(): boolean {
     return this.shownIsovalue === this.initial.isovalue;
   }
-  get events(): TrackEvent[] {
-    return this.isOwnSurface ? this.allEvents : [];
+  /// Those that are neither hidden by their type nor another isovalue's.
+  get events(): readonly TrackEvent[] {
+    return this.isOwnSurface ? this.chosenEvents() : [];
+  }
+  chosenEvents(): readonly TrackEvent[] {
+    const hidden = this.hiddenTypes();
+    return hidden.length ? this.allEvents.filter((event) => !hidden.includes(event.type)) : this.allEvents;
+  }
+  /// Whether a track is left out as small or short.
+  isSimplified(track: number): boolean {
+    return this.simplified.has(track);
+  }
+  hiddenTypes(): string[] {
+    return this.state.hide.split(",").filter(Boolean);
+  }
+  showType(type: string, shown: boolean): void {
+    const others = this.hiddenTypes().filter((one) => one !== type);
+    this.set({ hide: (shown ? others : [...others, type]).sort().join() });
   }
 
   onChange(listener: (state: State, changed: Set<keyof State>) => void): void {
@@ -172,10 +192,12 @@ export class App {
     this.turnTo(normal);
     this.resetView();
   }
-  /// Turns the plane about the middle of the domain to a normal of the scene.
-  turnTo(normal: Vector4): void {
-    if (Math.hypot(...normal) < 1e-9) return;
-    this.useFrame(turnedTo(this.space, this.state.frame, normal));
+  /// Turns the plane about the middle of the domain to a normal of the scene; false for one without a direction.
+  turnTo(normal: Vector4): boolean {
+    const largest = Math.max(...normal.map(Math.abs));
+    if (!(largest > 0 && largest < Infinity)) return false;
+    this.useFrame(turnedTo(this.space, this.state.frame, normal.map((x) => x / largest) as Vector4));
+    return true;
   }
   useFrame(frame: Frame): void {
     const reach = reachOf(this.space, frame);
@@ -217,8 +239,7 @@ export class App {
   }
   showEvent(event: TrackEvent): void {
     this.moveToTime(event.time);
-    const lines = [event.type, meaningOf(event.type), this.positionText(this.space.timeAxis, event.time)];
-    this.view.marker = { point: this.picturePoint(event.position), text: lines.filter(Boolean).join("\n") };
+    this.view.marker = { point: this.picturePoint(event.position), text: eventLines(this, event).join("\n") };
     this.view.request();
   }
   /// Where a place in space is in the picture.
@@ -240,11 +261,12 @@ export class App {
     this.moveTo(time);
   }
 
-  positionText(axis: number, position: number): string {
+  /// "t = 0.500 s"; `finer`: how many times as fine as a tenth of a step.
+  positionText(axis: number, position: number, finer = 1): string {
     if (axis < 0) return `offset ${readable(position, 0.001)}`;
     const { name, unit, minimum, maximum, samples } = this.space.axes[axis]!;
     const step = samples > 1 ? (maximum - minimum) / (samples - 1) / 10 : (maximum - minimum) / 1000;
-    return `${name} = ${readable(position, step)}${unit ? " " + unit : ""}`;
+    return `${name} = ${readable(position, step / finer)}${unit ? " " + unit : ""}`;
   }
 
   slice(): Triangles {
@@ -364,7 +386,8 @@ export class App {
   private applyColour(): void {
     const { uniforms } = this.surface;
     const { state, colouring, space } = this;
-    if (this.shownColour !== colouring.key) this.uploadColour(colouring.key);
+    const values = /^(component|track|attribute:)/.test(colouring.key) ? colouring.key : "none";
+    if (this.shownValues !== values && (values !== "none" || this.shownValues === "")) this.uploadValues(values);
     this.surface.setMap(state.map, state.reversed);
     uniforms.highlight.value = state.highlight;
     const [low, high] = this.colourRange();
@@ -385,15 +408,12 @@ export class App {
     }
   }
 
-  private uploadColour(key: string): void {
-    this.shownColour = key;
-    if (key === "component") this.surface.setAttribute(this.componentOfVertex(), null);
-    else if (key === "track") this.surface.setAttribute(this.trackOfVertex(), null);
-    else if (key.startsWith("attribute:")) {
-      const values = this.mesh.attributes[Number(key.slice(10))]!;
-      if (this.colouring.kind === "label") this.surface.setAttribute(values, null);
-      else this.surface.setAttribute(null, values);
-    }
+  private uploadValues(key: string): void {
+    this.shownValues = key;
+    const tracks = this.trackAttribute() >= 0 && this.canColourBy("track") ? this.trackOfVertex() : null;
+    const values = key === "component" ? this.componentOfVertex() : key === "track" ? tracks
+      : key.startsWith("attribute:") ? this.mesh.attributes[Number(key.slice(10))]! : null;
+    this.surface.setValues(values, tracks);
   }
   componentOfVertex(): Uint32Array {
     this.components ??= componentsOf(this.mesh);

@@ -5,16 +5,55 @@ import type { TrackEvent } from "./metadata";
 /// Events that leave the number of components as it is: there can be many.
 export const isMinor = (type: string): boolean => type === "genus" || type === "touch";
 
-const MEANINGS: Record<string, string> = {
+/// The types in the order in which they are listed, and what each of them means.
+export const EVENT_TYPES: Record<string, string> = {
+  merge: "two or more components meet and go on as one",
+  split: "a component parts",
   compound: "several begin, end or meet at once",
+  birth: "a component begins",
+  death: "a component ends",
+  enter: "a component comes in through a wall",
+  exit: "a component goes out through a wall",
   genus: "a handle or a hole more or less",
-  touch: "a wall begins or ends to cut it",
-  enter: "through a wall",
-  exit: "through a wall",
+  touch: "a wall begins or ends to cut a component",
 };
-/// What the name of an event does not say, or nothing.
-export const meaningOf = (type: string): string => MEANINGS[type] ?? "";
 
-/// "genus at t = 0.5 s: a handle or a hole more or less"
-export const eventText = (app: App, event: TrackEvent): string =>
-  `${event.type} at ${app.positionText(app.space.timeAxis, event.time)}${meaningOf(event.type) && ": " + meaningOf(event.type)}`;
+const FINER = 100; // times of events, than those of other moments
+
+function named(tracks: readonly number[]): string {
+  if (tracks.length === 0) return "nothing";
+  return `${tracks.length === 1 ? "track" : "tracks"} ${tracks.join(", ")}`;
+}
+
+/// Of a component cut by walls in curves, the rims, the Euler characteristic is 2 - 2 handles - rims; a touch leaves the
+/// handles as they are.
+function changeOfTopology(app: App, { type, delta_euler: change = 0 }: TrackEvent): string {
+  const more = change < 0 ? "more" : "less", count = Math.abs(change);
+  if (type === "genus") return change ? `a handle or a hole ${more}` : "its genus changes";
+  if (app.space.dimension < 4 || !change) return "a wall begins or ends to cut it";
+  return `walls cut it in ${count === 1 ? "one curve" : `${count} curves`} ${more}`;
+}
+
+/// What happens, to those tracks that are shown: "tracks 0, 3 → track 0".
+function happening(app: App, event: TrackEvent): string {
+  const [from, to] = [event.in, event.out].map((ids) => ids.filter((id) => !app.isSimplified(id)).sort((a, b) => a - b)) as [number[], number[]];
+  const one = named(to.length ? to : from);
+  switch (event.type) {
+    case "birth": return `${one} begins`;
+    case "death": return `${one} ends`;
+    case "enter": return `${one} comes in through a wall`;
+    case "exit": return `${one} goes out through a wall`;
+    case "genus":
+    case "touch": return `${one}: ${changeOfTopology(app, event)}`;
+    default: return `${named(from)} → ${named(to)}`;
+  }
+}
+
+export const eventLines = (app: App, event: TrackEvent): string[] =>
+  [event.type, happening(app, event), app.positionText(app.space.timeAxis, event.time, FINER)];
+
+/// "split at t = 0.50012 s: track 0 → 0, 3"
+export function eventText(app: App, event: TrackEvent): string {
+  const [type, what, time] = eventLines(app, event);
+  return `${type} at ${time}: ${what}`;
+}

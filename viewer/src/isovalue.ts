@@ -1,6 +1,7 @@
 // The isovalue: of a page that holds the field, chosen while it is shown.
 import { type App, element } from "./app";
 import type { FieldSource } from "./field";
+import { useNumbers } from "./numbers";
 import { readable } from "./space";
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -24,10 +25,15 @@ export async function buildIsovalue(app: App, source: FieldSource | null,
   drawHistogram(counts, (own - low) / (high - low || 1));
 
   slider.addEventListener("input", () => app.set({ isovalue: Number(Number(slider.value).toPrecision(6)) }));
-  number.addEventListener("change", () => {
-    const value = Number(number.value);
-    if (number.value.trim() !== "" && Number.isFinite(value)) app.set({ isovalue: Math.max(low, Math.min(high, value)) });
-    else number.value = String(app.state.isovalue);
+  const showNumber = useNumbers({
+    inputs: [number],
+    note: element("isovalue-note"),
+    inForce: () => [app.state.isovalue],
+    text: String,
+    use: ([value]) => {
+      app.set({ isovalue: value === own ? own : Math.max(low, Math.min(high, value!)) });
+      return "";
+    },
   });
   back.addEventListener("click", () => app.set({ isovalue: own }));
 
@@ -35,7 +41,8 @@ export async function buildIsovalue(app: App, source: FieldSource | null,
   source.onProgress = (share) => (bar.value = share);
   app.onChange((state, changed) => {
     if (!changed.has("isovalue")) return;
-    slider.value = number.value = String(state.isovalue);
+    showNumber();
+    slider.value = String(state.isovalue);
     slider.setAttribute("aria-valuetext", String(state.isovalue));
     back.disabled = state.isovalue === own;
     if (state.isovalue === asked) return;
@@ -59,9 +66,12 @@ function drawHistogram(counts: number[], own: number): void {
   const largest = Math.log1p(Math.max(1, ...counts));
   const bars = document.createElementNS(SVG, "path");
   bars.setAttribute("d", counts.map((count, i) => `M${i} 32V${(32 - (31 * Math.log1p(count)) / largest).toFixed(2)}h1V32z`).join(""));
-  const mark = document.createElementNS(SVG, "path");
-  mark.setAttribute("class", "own");
-  mark.setAttribute("d", `M${(own * counts.length).toFixed(2)} 0V32`);
-  drawing.append(bars, mark);
+  drawing.append(bars);
+  if (own >= 0 && own <= 1) {
+    const mark = document.createElementNS(SVG, "path");
+    mark.setAttribute("class", "own");
+    mark.setAttribute("d", `M${(own * counts.length).toFixed(2)} 0V32`);
+    drawing.append(mark);
+  }
   element("histogram").replaceChildren(drawing);
 }

@@ -2,6 +2,7 @@
 import { type App, element } from "./app";
 import { COLOUR_MAPS, labelColour, mapGradient } from "./colours";
 import { axisFrame, rotated } from "./frame";
+import { useNumbers } from "./numbers";
 import { readable, type Vector4 } from "./space";
 import type { State } from "./state";
 
@@ -98,20 +99,20 @@ function buildTilts(app: App): void {
     return control;
   });
   element("normal-form").addEventListener("submit", (event) => event.preventDefault());
-  for (const control of inputs)
-    control.addEventListener("change", () => {
-      const normal = [0, 1, 2, 3].map((k) => Number(inputs[k]?.value ?? 0)) as Vector4;
-      if (normal.every(Number.isFinite)) app.turnTo(normal);
-    });
+  const showNormal = useNumbers({
+    inputs,
+    note: element("normal-note"),
+    inForce: () => axes.map((_, k) => app.state.frame[3][k]!),
+    text: (value) => readable(value, 0.01),
+    use: (values) => (app.turnTo([0, 1, 2, 3].map((k) => values[k] ?? 0) as Vector4) ? "" : "One of them has to differ from 0."),
+  });
   input("hide-beyond").addEventListener("change", () => app.set({ hideBeyond: input("hide-beyond").checked }));
   element("hide-row").hidden = dimension === 4;
 
   app.onChange((state, changed) => {
     if (changed.has("hideBeyond")) input("hide-beyond").checked = state.hideBeyond;
     if (!changed.has("frame")) return;
-    inputs.forEach((control, k) => {
-      if (document.activeElement !== control) control.value = readable(state.frame[3][k]!, 0.01);
-    });
+    showNormal();
     const preset = app.axis >= 0 && state.frame.flat().every((x, i) => x === axisFrame(app.space, app.axis).flat()[i]);
     if (preset) for (const entry of sliders) entry.control.value = String((entry.used = 0));
   });
@@ -128,13 +129,21 @@ function buildColour(app: App): void {
   });
   select("map").addEventListener("change", () => app.set({ map: select("map").value }));
   input("reversed").addEventListener("change", () => app.set({ reversed: input("reversed").checked }));
-  const useRange = (): void => {
-    const range: [number, number] = [Number(input("range-low").value), Number(input("range-high").value)];
-    if (range.every(Number.isFinite) && range[0] < range[1]) app.set({ range });
-  };
-  input("range-low").addEventListener("change", useRange);
-  input("range-high").addEventListener("change", useRange);
-  element("range-reset").addEventListener("click", () => app.set({ range: null }));
+  const showRange = useNumbers({
+    inputs: [input("range-low"), input("range-high")],
+    note: element("range-note"),
+    inForce: () => app.colourRange(),
+    text: (value) => rangeText(app, value),
+    use: ([low, high]) => {
+      if (low! >= high!) return "From has to be below to.";
+      app.set({ range: [low!, high!] });
+      return "";
+    },
+  });
+  element("range-reset").addEventListener("click", () => {
+    app.set({ range: null });
+    showRange();
+  });
   input("opacity").addEventListener("input", () => app.set({ opacity: Number(input("opacity").value) }));
 
   app.onChange((state, changed) => {
@@ -142,12 +151,22 @@ function buildColour(app: App): void {
     select("map").value = state.map;
     input("reversed").checked = state.reversed;
     input("opacity").value = String(state.opacity);
-    if (["colour", "map", "reversed", "range"].some((key) => changed.has(key as keyof State))) showLegend(app);
+    if (["colour", "map", "reversed", "range"].some((key) => changed.has(key as keyof State))) {
+      showRange();
+      showLegend(app);
+    }
   });
   app.onMesh(() => {
     for (const one of select("colour").options) one.disabled = !app.canColourBy(one.value);
+    showRange();
     showLegend(app);
   });
+}
+
+/// An end of the range, with the digits that its length asks for.
+function rangeText(app: App, end: number): string {
+  const [low, high] = app.colourRange();
+  return readable(end, (high - low) / 100);
 }
 
 function showLegend(app: App): void {
@@ -156,12 +175,9 @@ function showLegend(app: App): void {
   element("map-controls").hidden = !ranged;
   element("legend").hidden = colouring.kind === "solid";
   element("legend-name").textContent = colouring.name;
-  const [low, high] = app.colourRange();
   if (ranged) {
-    const step = (high - low) / 100;
     element("legend-bar").style.background = mapGradient(state.map, state.reversed);
-    element("legend-low").textContent = input("range-low").value = readable(low, step);
-    element("legend-high").textContent = input("range-high").value = readable(high, step);
+    app.colourRange().forEach((end, i) => (element(i ? "legend-high" : "legend-low").textContent = rangeText(app, end)));
   } else if (colouring.kind === "label") {
     const labels = shownLabels(app);
     const width = 100 / Math.min(12, labels.length);

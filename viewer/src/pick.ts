@@ -67,7 +67,7 @@ export function describe(app: App, hit: NonNullable<ReturnType<typeof pick>>): s
       lines.push(`${attribute.name} = ${attribute.labels[level]}`);
     }
   });
-  if (app.metadata.isovalue !== undefined) lines.push(`${app.metadata.field || "value"} = ${app.metadata.isovalue}`);
+  if (app.metadata.isovalue !== undefined) lines.push(`${app.metadata.field || "value"} = ${app.shownIsovalue}`);
   return lines.join("\n");
 }
 

@@ -42,6 +42,7 @@ export class SceneView {
 
   constructor(
     private readonly stage: HTMLElement, canvas: HTMLCanvasElement, labelCanvas: HTMLCanvasElement,
+    private readonly legend: HTMLElement,
     private readonly space: Space, private readonly surface: Surface,
   ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, powerPreference: "high-performance" });
@@ -252,8 +253,12 @@ export class SceneView {
     const name = this.space.label(k);
     const clear = 30 + (Math.abs(across[0]) * labels.measureText(name).width) / 2;
     const margin = labels.measureText(name).width / 2 + 4;
-    const left = Math.max(margin, Math.min(this.stage.clientWidth - margin, middle[0] + clear * across[0]));
-    labels.fillText(name, left, middle[1] + 36 * across[1]);
+    const within = (x: number) => Math.max(margin, Math.min(this.stage.clientWidth - margin, x));
+    const beside = middle[0] + clear * across[0];
+    const upper = begin[1] < end[1] ? begin : end;
+    // Where it has no room beside the numbers of an upright axis, it stands above the axis.
+    if (within(beside) !== beside && Math.abs(across[0]) > 0.8) labels.fillText(name, within(upper[0]), upper[1] - 10);
+    else labels.fillText(name, within(beside), middle[1] + 36 * across[1]);
   }
 
   /// For oblique planes: in which directions of the picture the axes run.
@@ -299,7 +304,10 @@ export class SceneView {
     const { clientWidth, clientHeight } = this.stage;
     const beside = [x + 12, x - 12 - width].find((one) => one >= 4 && one + width + 4 <= clientWidth);
     const left = beside ?? Math.max(4, Math.min(x - width / 2, clientWidth - width - 4));
-    const top = Math.max(4, Math.min(beside === undefined ? y + 12 : y - height / 2, clientHeight - height - 4));
+    const wanted = Math.max(4, Math.min(beside === undefined ? y + 12 : y - height / 2, clientHeight - height - 4));
+    const { offsetLeft, offsetTop, offsetWidth, offsetHeight } = this.legend; // which lies above it
+    const hidden = left < offsetLeft + offsetWidth && left + width > offsetLeft && wanted < offsetTop + offsetHeight && wanted + height > offsetTop;
+    const top = !hidden ? wanted : offsetTop > height + 8 ? offsetTop - height - 4 : offsetTop + offsetHeight + 4;
     labels.fillStyle = this.palette.background[0];
     labels.globalAlpha = 0.92;
     labels.beginPath();

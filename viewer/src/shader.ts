@@ -10,7 +10,7 @@ precision highp int;
 precision highp usampler2D;
 
 uniform mat4 projectionMatrix, modelViewMatrix;
-uniform usampler2D vertices;  // levels x | y << 16, levels z | w << 16, normal, attribute
+uniform usampler2D vertices;  // levels x | y << 16, levels z | w << 16, normal, track | value << 16
 uniform usampler2D simplices; // four vertices
 uniform usampler2D chunks;    // the chunks to draw
 uniform int simplexCount, corners;
@@ -22,7 +22,7 @@ uniform float planeOffset;
 out vec4 scenePoint;
 out vec3 picture, viewPosition, viewNormal;
 out float normalSpeed, scalar;
-flat out uint label;
+flat out uint label, track;
 
 const uint cutEdges[16] = uint[16](${CUT_EDGES.map((edges) => `${edges}u`).join(", ")});
 
@@ -35,13 +35,13 @@ vec4 levelsOf(uvec4 vertex) {
 vec4 normalOf(uvec4 vertex) {
   return vec4(ivec4(vertex.z << 24, vertex.z << 16, vertex.z << 8, vertex.z) >> 24);
 }
-float scalarOf(uvec4 vertex) { return float(vertex.w & 0xffffu) / 65535.0; }
+float scalarOf(uvec4 vertex) { return float(vertex.w >> 16) / 65535.0; }
 
 void main() {
   scenePoint = vec4(0);
   picture = viewPosition = viewNormal = vec3(0);
   normalSpeed = scalar = 0.0;
-  label = 0u;
+  label = track = 0u;
   gl_Position = vec4(0, 0, 2, 1); // nowhere
 
   uint chunk = fetch(chunks, uint(gl_InstanceID)).x;
@@ -50,6 +50,7 @@ void main() {
   uvec4 simplex = fetch(simplices, number);
   uvec4 first = fetch(vertices, simplex.x);
   label = first.w >> 16;
+  track = first.w & 0xffffu;
 
   vec4 levels, normal;
   int corner = gl_VertexID & 3;
@@ -100,7 +101,7 @@ uniform float opacity, wire;
 uniform int side;       // 0 both, 1 those that face away, 2 those that face the viewer
 uniform vec4 clip;      // what lies beyond this plane of the picture is left out
 uniform vec3 boxLow, boxHigh;
-uniform int highlight;  // a label; -1: none
+uniform int highlight;  // a track; -1: none
 uniform vec4 section;   // surfaces in R^3: a plane of the scene, drawn as a line on the surface
 uniform float sectionOffset;
 uniform int sectionMode; // 0 none, 1 a line, 2 a line, and what is beyond is left out
@@ -110,7 +111,7 @@ uniform bool orthographic, mask;
 in vec4 scenePoint;
 in vec3 picture, viewPosition, viewNormal;
 in float normalSpeed, scalar;
-flat in uint label;
+flat in uint label, track;
 out vec4 fragment;
 
 vec3 linear(vec3 colour) { return pow(colour, vec3(2.2)); }
@@ -140,7 +141,7 @@ void main() {
 
   vec3 base = linear(baseColour());
   if (inner) base = mix(base, vec3(dot(base, vec3(0.3, 0.6, 0.1))), 0.35) * 0.62;
-  if (highlight >= 0 && int(label) != highlight) base = mix(vec3(dot(base, vec3(0.3, 0.6, 0.1))), vec3(0.3), 0.4);
+  if (highlight >= 0 && int(track) != highlight) base = mix(vec3(dot(base, vec3(0.3, 0.6, 0.1))), vec3(0.3), 0.4);
 
   const vec3 key = normalize(vec3(-0.45, 0.75, 0.6)), fill = normalize(vec3(0.8, -0.1, 0.45));
   float sky = 0.5 + 0.5 * normal.y;

@@ -24,7 +24,8 @@ export interface State {
   projection: "perspective" | "orthographic";
   theme: "auto" | "light" | "dark";
   camera: number[] | null; // position and target; null: as at first
-  highlight: number; // a label; -1: none
+  highlight: number; // a track; -1: none
+  hide: string; // types of events, with commas between them
   isovalue: number; // asked for; the page's own, where it holds no field
 }
 
@@ -53,6 +54,7 @@ export function initialState(metadata: Metadata, space: Space): State {
     theme: "auto",
     camera: null,
     highlight: -1,
+    hide: "",
     isovalue: metadata.isovalue ?? 0,
   };
 }
@@ -123,6 +125,7 @@ export function fromHash(hash: string, initial: State, space: Space): State {
   }
   if (given.has("colour")) state.colour = given.get("colour")!;
   if (given.has("map")) state.map = given.get("map")!;
+  if (given.has("hide")) state.hide = given.get("hide")!;
   state.range = numbers("range", 2) as [number, number] | null;
   state.box = numbers("box", 6) ?? state.box;
   state.camera = numbers("camera", 6);

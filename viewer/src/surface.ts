@@ -159,11 +159,11 @@ export class Surface {
     this.object.visible = this.cutChunkCount > 0;
   }
 
-  /// What labels and scalars are: of each vertex a label, and a number of 16 bits.
-  setAttribute(labels: ArrayLike<number> | null, scalars: ArrayLike<number> | null): void {
+  /// Of each vertex what it is coloured by, a label or a number of 16 bits, and its track.
+  setValues(values: ArrayLike<number> | null, tracks: ArrayLike<number> | null): void {
     const packed = this.vertices.image.data as Uint32Array;
     for (let vertex = 0; vertex < this.mesh.vertexCount; ++vertex)
-      packed[4 * vertex + 3] = ((labels ? labels[vertex]! & 0xffff : 0) << 16) | (scalars ? scalars[vertex]! : 0);
+      packed[4 * vertex + 3] = ((values ? values[vertex]! & 0xffff : 0) << 16) | (tracks ? tracks[vertex]! : 0);
     this.vertices.needsUpdate = true;
   }
 

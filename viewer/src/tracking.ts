@@ -1,12 +1,12 @@
 // The tracking graph under the scene: a lane for each track along the time line, a glyph for each event.
 import { type App, element } from "./app";
 import { labelColour } from "./colours";
-import { eventText, isMinor } from "./events";
+import { EVENT_TYPES, eventText, isMinor } from "./events";
 import type { Track, TrackEvent } from "./metadata";
 
 const SVG = "http://www.w3.org/2000/svg";
 const LANE = 20, TOP = 8;
-const MOST_NAMED = 16; // events that are named beside their glyph
+const MOST_NAMED = 16, NAME = 14; // events that are named beside their glyph; where the name begins, and room behind it
 
 function svg<K extends keyof SVGElementTagNameMap>(name: K, attributes: Record<string, string | number>): SVGElementTagNameMap[K] {
   const result = document.createElementNS(SVG, name);
@@ -37,35 +37,49 @@ const GLYPHS: Record<string, string> = {
 
 function glyphOf(type: string): SVGElement {
   if (GLYPHS[type]) return svg("path", { d: GLYPHS[type]! });
-  if (isMinor(type)) return svg("rect", { x: -2, y: -5, width: 4, height: 10, rx: 2 });
+  if (type === "genus") return svg("rect", { x: -2.5, y: -5, width: 5, height: 10, rx: 2.5 });
+  if (type === "touch") return svg("rect", { x: -1, y: -5, width: 2, height: 10 });
   return svg("circle", { r: 4.5 });
 }
 
-/// What the glyphs mean, for the line above the lanes.
-const KEY: [name: string, types: string[]][] = [
-  ["merge", ["merge"]],
-  ["split", ["split"]],
-  ["several at once", ["compound"]],
-  ["begin, end", ["birth", "death", "enter", "exit"]],
-  ["change of topology", ["genus", "touch"]],
-];
-
 const counted = (count: number, noun: string): string => `${count} ${noun}${count === 1 ? "" : "s"}`;
+/// "8 of 28 tracks"
+const share = (count: number, all: number, noun: string): string => (count === all ? "" : `${count} of `) + counted(all, noun);
 
-/// The line above the lanes: what they are, what the glyphs mean, and buttons from event to event.
-function headOf(app: App, tracks: readonly Track[], events: readonly TrackEvent[]): HTMLElement {
+/// A button for each type of event there is, with how many: whether they are shown.
+function typeButtons(app: App): HTMLElement {
+  const group = document.createElement("span");
+  group.className = "event-types";
+  group.setAttribute("role", "group");
+  group.setAttribute("aria-label", "Events that are shown");
+  for (const [type, meaning] of Object.entries(EVENT_TYPES)) {
+    const count = app.allEvents.filter((event) => event.type === type).length;
+    if (count === 0) continue;
+    const button = document.createElement("button");
+    Object.assign(button, { type: "button", title: `${type}: ${meaning}. Click to show or hide these events` });
+    button.append(pictureOf(type), `${type} ${count}`);
+    button.addEventListener("click", () => app.showType(type, app.hiddenTypes().includes(type)));
+    const showPressed = (): void => button.setAttribute("aria-pressed", String(!app.hiddenTypes().includes(type)));
+    showPressed();
+    app.onChange((_, changed) => changed.has("hide") && showPressed());
+    group.append(button);
+  }
+  return group;
+}
+
+/// The line above the lanes: what they are, which events are shown, and buttons from event to event.
+function headOf(app: App, tracks: readonly Track[]): HTMLElement {
   const head = document.createElement("div");
   head.className = "tracking-head";
   const name = document.createElement("strong");
-  name.textContent = `${counted(tracks.length, "track")}, ${counted(events.length, "event")}`;
   name.title = "Point at a track to see it in the picture; click an event to go there";
+  const showCount = (): void => {
+    name.textContent = `${share(tracks.length, app.metadata.tracking!.tracks.length, "track")}, ` +
+      share(app.chosenEvents().length, app.allEvents.length, "event");
+  };
+  showCount();
   head.append(name);
-  const key = document.createElement("span");
-  key.className = "glyph-key";
-  for (const [meaning, types] of KEY)
-    if (events.some((event) => types.includes(event.type))) key.append(pictureOf(types[0]!), meaning);
-  head.append(key);
-  if (events.length === 0) return head;
+  if (app.allEvents.length === 0) return head;
   const buttons = document.createElement("span");
   buttons.className = "event-buttons";
   for (const [direction, text, title] of [[-1, "‹ event", "Previous event ([)"], [1, "event ›", "Next event (])"]] as const) {
@@ -73,9 +87,11 @@ function headOf(app: App, tracks: readonly Track[], events: readonly TrackEvent[
     Object.assign(button, { type: "button", textContent: text, title, id: direction < 0 ? "event-back" : "event-forward" });
     button.setAttribute("aria-label", title.replace(/ \(.*/, ""));
     button.addEventListener("click", () => app.stepEvent(direction));
+    app.onChange((_, changed) => changed.has("hide") && (button.disabled = app.chosenEvents().length === 0));
     buttons.append(button);
   }
-  head.append(buttons);
+  head.append(typeButtons(app), buttons);
+  app.onChange((_, changed) => changed.has("hide") && showCount());
   return head;
 }
 
@@ -94,15 +110,14 @@ export function buildTracking(app: App): void {
   if (tracks.length === 0) return;
   const host = element("tracking");
   host.hidden = false;
-  element("dock").classList.add("with-tracks");
-  const { events } = app;
+  document.body.classList.add("with-tracks");
   const lanes = lanesOf(tracks);
   const axis = app.space.axes[app.space.timeAxis]!;
   const largestVolume = tracks.reduce((largest, track) => Math.max(largest, track.max_volume ?? 0), 0);
   const height = TOP * 2 + LANE * (Math.max(...lanes.values()) + 1);
   const drawing = svg("svg", { height, role: "group", "aria-label": "Tracks and events through time" });
   const now = svg("line", { class: "now", y1: 0, y2: height });
-  const head = headOf(app, tracks, events);
+  const head = headOf(app, tracks);
   const stale = document.createElement("p");
   stale.className = "stale";
   const back = document.createElement("button");
@@ -129,11 +144,12 @@ export function buildTracking(app: App): void {
     x = (time) => side + ((slider.width - 16) * (time - axis.minimum)) / (axis.maximum - axis.minimum || 1);
     drawing.replaceChildren();
     drawing.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    for (const event of events) drawLinks(event);
+    for (const event of app.allEvents) drawLinks(event);
     for (const track of tracks) drawing.append(lane(track));
-    const shown = events.filter((event) => [...event.in, ...event.out].some((id) => lanes.has(id)));
+    const shown = app.chosenEvents().filter((event) => [...event.in, ...event.out].some((id) => lanes.has(id)));
     const byWeight = [...shown].sort((a, b) => Number(isMinor(b.type)) - Number(isMinor(a.type)));
-    for (const event of byWeight) drawing.append(glyph(event, shown.length <= MOST_NAMED));
+    const named = namedOf(shown);
+    for (const event of byWeight) drawing.append(glyph(event, named.has(event)));
     drawing.append(now);
     moveNow();
   };
@@ -166,7 +182,7 @@ export function buildTracking(app: App): void {
       name.textContent = `track ${track.id}`;
       group.append(name);
     }
-    const light = (on: boolean) => app.set({ highlight: on ? track.id & 0xffff : -1, ...(on && app.trackAttribute() >= 0 ? { colour: "track" } : {}) });
+    const light = (on: boolean) => app.set({ highlight: on ? track.id & 0xffff : -1 });
     group.addEventListener("pointerenter", () => light(true));
     group.addEventListener("pointerleave", () => light(false));
     group.addEventListener("focus", () => light(true));
@@ -187,17 +203,29 @@ export function buildTracking(app: App): void {
     const lower = [...steps].reverse().map(([time, volume]) => `${x(time)} ${middle + half(volume)}`);
     return `M${begin} ${middle}L${upper.join("L")}L${end} ${middle}L${lower.join("L")}z`;
   };
+  /// The track beside which an event that has one in a lane stands.
+  const trackOf = (event: TrackEvent): number => [...event.out, ...event.in].find((id) => lanes.has(id))!;
+  /// The events, few enough, beside whose glyph their name has room before the next glyph.
+  const namedOf = (shown: readonly TrackEvent[]): Set<TrackEvent> => {
+    if (shown.length > MOST_NAMED) return new Set();
+    const places = shown.map((event) => ({ event, lane: y(trackOf(event)), at: x(event.time), side: sideOf(event) }));
+    return new Set(places.filter(({ event, lane, at, side }) => places.every((other) => {
+      const away = side * (other.at - at), letters = event.type.length + (other.side === side ? 0 : other.event.type.length);
+      return other.event === event || other.lane !== lane || away < 0 || away > NAME + 7 * letters;
+    })).map(({ event }) => event));
+  };
+  /// 1: the name stands to the right of the glyph; -1: to the left, at the end of the line.
+  const sideOf = (event: TrackEvent): 1 | -1 => (x(event.time) < drawing.clientWidth - 80 ? 1 : -1);
   const glyph = (event: TrackEvent, named: boolean): SVGElement => {
-    const tracks = [...event.in, ...event.out].filter((id) => lanes.has(id));
-    const at = tracks.length ? y(event.out.find((id) => lanes.has(id)) ?? tracks[0]!) : TOP;
+    const at = y(trackOf(event));
     const label = eventText(app, event);
     const group = svg("g", { class: isMinor(event.type) ? "glyph minor" : "glyph", transform: `translate(${x(event.time)} ${at})`, tabindex: 0, role: "button", "aria-label": label, "data-event": event.type });
     const title = svg("title", {});
     title.textContent = label;
     group.append(glyphOf(event.type), title);
     if (named) {
-      const right = x(event.time) < drawing.clientWidth - 80;
-      const name = svg("text", { x: right ? 9 : -9, y: 4, "text-anchor": right ? "start" : "end" });
+      const side = sideOf(event);
+      const name = svg("text", { x: 9 * side, y: 4, "text-anchor": side > 0 ? "start" : "end" });
       name.textContent = event.type;
       group.append(name);
     }
@@ -209,6 +237,7 @@ export function buildTracking(app: App): void {
   };
 
   app.onChange((state, changed) => {
+    if (changed.has("hide")) draw();
     if (changed.has("offset") || changed.has("frame")) moveNow();
     if (changed.has("highlight"))
       for (const one of drawing.querySelectorAll(".lane"))

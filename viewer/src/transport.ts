@@ -23,7 +23,7 @@ export function buildTransport(app: App): void {
       element("play").setAttribute("aria-label", state.playing ? "Pause" : "Play");
       element("play-icon").setAttribute("d", state.playing ? PAUSE : PLAY);
     }
-    if (changed.has("frame")) showRange(app);
+    if (changed.has("frame") || changed.has("hide")) showRange(app);
     if (changed.has("frame") || changed.has("offset")) showPosition(app);
   });
   app.onMesh(() => {
@@ -69,6 +69,8 @@ function showPosition(app: App): void {
   detail.textContent = stepText(app, position);
   output.replaceChildren(text, detail);
   element("empty").hidden = app.surface.cutChunkCount > 0;
+  element("empty").textContent = app.mesh.simplexCount > 0 ? "The plane meets no part of the surface here."
+    : `There is no surface${app.metadata.isovalue === undefined ? "" : ` at isovalue ${app.shownIsovalue}`}.`;
 }
 
 function stepText(app: App, position: number): string {
@@ -92,7 +94,7 @@ export function buildKeys(app: App, save: { picture(): void }): void {
     ? `The picture is the cut of a surface in four dimensions (${app.space.axes.map((axis) => axis.name).join(", ")}) by a plane` +
       `${time >= 0 ? `. Across ${app.space.axes[time]!.name} it shows a moment, and playing moves it through time; across another axis, or oblique, it mixes space and time` : ""}.`
     : "The picture is the surface. The plane draws a line on it.";
-  element("event-keys").hidden = app.events.length === 0;
+  element("event-keys").hidden = app.allEvents.length === 0;
 
   const keys: Record<string, (event: KeyboardEvent) => void> = {
     " ": () => app.togglePlaying(),

@@ -267,6 +267,51 @@ describe("the page of a surface in space and time", () => {
     assert.equal(await state(page, "range"), null);
   });
 
+  test("numbers that cannot be used are marked while one is among them, and give way to those in force", async () => {
+    await reset();
+    await page.selectOption("#colour", "axis:2");
+    const invalid = (selector) => page.getAttribute(selector, "aria-invalid");
+    await page.fill("#range-low", "2"); // on the way to 2 to 3
+    await page.press("#range-low", "Tab");
+    assert.equal(await page.evaluate(() => document.activeElement.id), "range-high");
+    assert.deepEqual([await page.inputValue("#range-low"), await invalid("#range-low"), await state(page, "range")], ["2", "true", null]);
+    assert.equal(await page.textContent("#range-note"), "From has to be below to.");
+    await page.keyboard.type("3"); // what was there is selected
+    await page.keyboard.press("Enter");
+    assert.deepEqual([await invalid("#range-low"), await page.textContent("#range-note")], [null, ""]);
+    assert.deepEqual(await state(page, "range"), [2, 3]);
+    for (const leave of [() => page.press("#range-high", "Tab"), () => page.press("#range-high", "Escape"), () => page.click("#range-high + *, #view", { position: { x: 20, y: 300 } })]) {
+      for (const [value, what] of [["1", "From has to be below to."], ["", "This needs a number."]]) {
+        await page.fill("#range-high", value);
+        await page.press("#range-high", "Enter");
+        assert.deepEqual([await page.textContent("#range-note"), await invalid("#range-high")], [what, "true"]);
+      }
+      await leave();
+      assert.deepEqual([await page.inputValue("#range-high"), await invalid("#range-high"), await state(page, "range")], ["3.00", null, [2, 3]]);
+    }
+
+    const normal = page.locator("#normal-inputs input");
+    const values = () => normal.evaluateAll((list) => list.map((one) => Number(one.value)));
+    await normal.nth(3).fill("0");
+    await normal.nth(3).press("Enter");
+    assert.equal(await page.textContent("#normal-note"), "One of them has to differ from 0.");
+    assert.deepEqual([await page.evaluate(() => hyperiso.axis), await values()], [3, [0, 0, 0, 0]]);
+    await normal.nth(0).fill("5"); // right with the other one
+    await normal.nth(0).press("Enter");
+    assert.deepEqual([await page.evaluate(() => hyperiso.axis), await values(), await page.textContent("#normal-note")], [0, [1, 0, 0, 0], ""]);
+    await normal.nth(0).fill("0");
+    await normal.nth(0).press("Enter");
+    await page.focus("#play");
+    assert.deepEqual(await values(), [1, 0, 0, 0]);
+    // What a box has no digits for is not lost when another one changes.
+    await page.evaluate(() => hyperiso.turnTo([1, 0.123456, 0, 1]));
+    await normal.nth(2).fill("1");
+    await normal.nth(2).press("Enter");
+    const [x, y] = await page.evaluate(() => hyperiso.state.frame[3]);
+    near(y / x, 0.123456, 1e-9);
+    await reset();
+  });
+
   test("opacity, wireframe, axes, projection", async () => {
     await reset();
     await page.evaluate(() => hyperiso.set({ axes: false }));
@@ -421,7 +466,7 @@ describe("the page of a surface in space and time", () => {
   });
 
   test("saves the frames of the whole run", async () => {
-    const { page, problems, close } = await open("blobs.html", { width: 800, height: 420 });
+    const { page, problems, close } = await open("blobs.html", { width: 1000, height: 420 });
     await page.evaluate(() => hyperiso.moveTo(0.4));
     await openSection(page, "Save");
     const [download] = await Promise.all([page.waitForEvent("download", { timeout: 60_000 }), page.click("#save-frames")]);
@@ -522,10 +567,11 @@ describe("the page of a tracking result", () => {
   test("shows tracks as lanes and events on the time line", async () => {
     assert.ok(await page.isVisible("#tracking"));
     assert.equal(await page.locator(".lane").count(), 2);
-    assert.deepEqual(await page.locator(".glyph").allTextContents(), ["merge at t = 0.595 smerge"]);
+    const [glyph0] = await page.locator(".glyph").allTextContents();
+    assert.match(glyph0, /^merge at t = 0\.59492 s: tracks 0, 1 → track [01]merge$/);
     assert.equal(await page.locator(".mark").count(), 1);
     assert.equal(await page.textContent(".tracking-head strong"), "2 tracks, 1 event");
-    assert.equal(await page.textContent(".glyph-key"), "merge");
+    assert.deepEqual(await page.locator(".event-types button").allTextContents(), ["merge 1"]);
     assert.equal(await state(page, "colour"), "track");
     assert.match(await page.textContent("#legend"), /2 tracks/);
     // A mark stands where the slider's handle is at that time.
@@ -553,7 +599,7 @@ describe("the page of a tracking result", () => {
   test("a click on an event goes there, by mouse and by key", async () => {
     await page.click('[data-event="merge"]');
     near(await position(page), MERGE, 1e-5);
-    assert.match(await page.evaluate(() => hyperiso.view.marker.text), /^merge\nt = 0\.595 s$/);
+    assert.match(await page.evaluate(() => hyperiso.view.marker.text), /^merge\ntracks 0, 1 → track [01]\nt = 0\.59492 s$/);
     await page.keyboard.press("End");
     await page.keyboard.press("[");
     near(await position(page), MERGE, 1e-5);
@@ -584,23 +630,59 @@ describe("the page of a tracking result", () => {
     assert.equal(await page.evaluate(() => hyperiso.axis), 3);
   });
 
-  test("says what a kind of event means where its name does not", async () => {
-    const texts = await page.evaluate(() => ["merge", "touch", "exit"].map((type) => {
-      hyperiso.showEvent({ ...hyperiso.events[0], type });
+  test("says what happens at an event, to which tracks", async () => {
+    const texts = await page.evaluate(() => [
+      ["split", [0], [0, 1]], ["compound", [], [0, 1]], ["birth", [], [1], 2], ["exit", [1], [], -1], ["genus", [0], [0], -2],
+      ["genus", [0], [0], 1], ["touch", [0], [0], -1], ["touch", [0], [0], 2],
+    ].map(([type, from, to, delta_euler]) => {
+      hyperiso.showEvent({ ...hyperiso.events[0], type, in: from, out: to, delta_euler });
       return hyperiso.view.marker.text;
     }));
-    assert.deepEqual(texts, ["merge\nt = 0.595 s", "touch\na wall begins or ends to cut it\nt = 0.595 s",
-      "exit\nthrough a wall\nt = 0.595 s"]);
+    assert.deepEqual(texts, ["split\ntrack 0 → tracks 0, 1", "compound\nnothing → tracks 0, 1", "birth\ntrack 1 begins",
+      "exit\ntrack 1 goes out through a wall", "genus\ntrack 0: a handle or a hole more", "genus\ntrack 0: a handle or a hole less",
+      "touch\ntrack 0: walls cut it in one curve more", "touch\ntrack 0: walls cut it in 2 curves less"].map((text) => text + "\nt = 0.59492 s"));
   });
 
-  test("hovering a track highlights it", async () => {
+  test("what is said at an event does not lie under the legend", async () => {
+    await page.selectOption("#colour", "track");
+    const inked = await page.evaluate(() => {
+      const legend = document.getElementById("legend"), { view } = hyperiso;
+      const { offsetLeft: x, offsetTop: y, offsetWidth: width, offsetHeight: height } = legend;
+      hyperiso.set({ axes: false });
+      hyperiso.showEvent(hyperiso.events[0]);
+      const ratio = view.renderer.getPixelRatio();
+      const filled = (x, y) => {
+        view.render();
+        const { data } = document.getElementById("labels").getContext("2d").getImageData(x * ratio, y * ratio, width * ratio, height * ratio);
+        return data.filter((alpha, i) => i % 4 === 3 && alpha > 200).length;
+      };
+      view.project = () => [x + 20, y + height / 2]; // wherever the event is, there
+      const found = [filled(x, y), filled(x, y - height)];
+      delete view.project;
+      hyperiso.set({ axes: true });
+      hyperiso.moveTo(0);
+      return found;
+    });
+    assert.ok(inked[0] < 100 && inked[1] > 1000, inked.join()); // the circle that marks the place, and the text
+  });
+
+  test("hovering a track highlights it, whatever the surface is coloured by", async () => {
     await page.evaluate(() => hyperiso.moveTo(0.2));
-    const plain = await picture(page);
-    await page.hover('[data-track="1"]');
-    assert.equal(await state(page, "highlight"), 1);
-    assert.notEqual((await picture(page)).sum, plain.sum);
-    await page.mouse.move(300, 300);
-    assert.equal(await state(page, "highlight"), -1);
+    for (const colour of ["solid", "track", "component", "speed", "attribute:0", "axis:0"]) {
+      await page.selectOption("#colour", colour);
+      const plain = await picture(page);
+      await page.hover('[data-track="1"]');
+      assert.equal(await state(page, "highlight"), 1);
+      assert.equal(await page.inputValue("#colour"), colour);
+      const one = await picture(page);
+      assert.notEqual(one.sum, plain.sum, colour);
+      await page.hover('[data-track="0"]');
+      const other = await picture(page);
+      assert.ok(other.sum !== plain.sum && other.sum !== one.sum, colour);
+      await page.mouse.move(300, 300);
+      assert.equal(await state(page, "highlight"), -1);
+      assert.equal((await picture(page)).sum, plain.sum, colour);
+    }
   });
 
   test("scalars and labels of the mesh colour it", async () => {
@@ -611,6 +693,96 @@ describe("the page of a tracking result", () => {
     const range = await page.evaluate(() => hyperiso.colourings.find((one) => one.name === "height").range);
     await page.evaluate((range) => hyperiso.set({ range }), range);
     (await picture(page)).mean.forEach((x, k) => near(x, pictured.mean[k], 1));
+  });
+
+  test("had no errors", () => assert.deepEqual(problems, []));
+});
+
+describe("the events of a page", () => {
+  // The page of two blobs with more events than they have.
+  const TIMES = { touch: [0.1, 0.2, 0.3, 0.7], genus: [0.25], merge: [0.594922], birth: [0.45], death: [0.46] };
+  let page, problems, close;
+  before(async () => {
+    const text = readFileSync(join(folder, "tracks.html"), "latin1");
+    const many = text.replace(/(id="hyperiso-metadata">)(.*?)(<\/script>)/, (_, begin, json, end) => {
+      const metadata = JSON.parse(json);
+      const [merge] = metadata.tracking.events.filter((event) => event.type === "merge");
+      for (const [type, times] of Object.entries(TIMES))
+        if (type !== "merge") for (const time of times) metadata.tracking.events.push({ ...merge, type, time, in: [0], out: [0] });
+      return begin + JSON.stringify(metadata) + end;
+    });
+    writeFileSync(join(folder, "events.html"), many, "latin1");
+    ({ page, problems, close } = await open("events.html"));
+  });
+  after(async () => { await close?.(); });
+  const button = (type) => page.locator(".event-types button", { hasText: type });
+  const along = async (key) => {
+    const found = [];
+    await page.keyboard.press(key === "]" ? "Home" : "End");
+    for (let i = 0; i < 9; ++i) {
+      await page.keyboard.press(key);
+      found.push(Number((await position(page)).toFixed(6)));
+    }
+    return [...new Set(found)];
+  };
+  const sorted = (...types) => types.flatMap((type) => TIMES[type]).sort((a, b) => a - b);
+
+  test("are counted by type, and all are there at first", async () => {
+    assert.deepEqual(await page.locator(".event-types button").allTextContents(), ["merge 1", "birth 1", "death 1", "genus 1", "touch 4"]);
+    assert.equal(await page.textContent(".tracking-head strong"), "2 tracks, 8 events");
+    assert.equal(await page.locator('.event-types [aria-pressed="true"]').count(), 5);
+    await page.focus("#view");
+    assert.deepEqual(await along("]"), sorted("merge", "birth", "death", "genus", "touch"));
+  });
+
+  test("are hidden by type: in the graph, on the time line, and on the way from one to the next", async () => {
+    await button("touch").click();
+    assert.equal(await button("touch").getAttribute("aria-pressed"), "false");
+    assert.equal(await page.textContent(".tracking-head strong"), "2 tracks, 4 of 8 events");
+    assert.equal(await page.locator('.glyph[data-event="touch"]').count(), 0);
+    assert.equal(await page.locator(".glyph").count(), 4);
+    assert.equal(await page.locator(".mark").count(), 4);
+    await page.focus("#view");
+    assert.deepEqual(await along("]"), sorted("merge", "birth", "death", "genus"));
+    assert.deepEqual(await along("["), sorted("merge", "birth", "death", "genus").reverse());
+    await button("genus").focus();
+    await page.keyboard.press(" "); // by the keyboard, and nothing plays
+    assert.equal(await state(page, "playing"), false);
+    assert.equal(await state(page, "hide"), "genus,touch");
+    assert.equal(await page.locator(".mark").count(), 3);
+  });
+
+  test("stay hidden in the address of the page", async () => {
+    await page.waitForFunction(() => location.hash.includes("hide="));
+    const hash = await page.evaluate(() => location.hash);
+    const other = await open("events.html", { hash });
+    assert.equal(await other.page.locator('.event-types [aria-pressed="false"]').count(), 2);
+    assert.equal(await other.page.locator(".glyph").count(), 3);
+    await other.close();
+    const unknown = await open("events.html", { hash: "#hide=no-such,touch" });
+    assert.equal(await state(unknown.page, "hide"), "touch");
+    await unknown.close();
+  });
+
+  test("may all be hidden, and come back", async () => {
+    for (const type of ["merge", "birth", "death"]) await button(type).click();
+    assert.equal(await page.locator(".glyph, .mark").count(), 0);
+    assert.ok(await page.isDisabled("#event-forward"));
+    for (const type of Object.keys(TIMES)) await button(type).click();
+    assert.equal(await page.locator(".glyph").count(), 8);
+    assert.equal(await state(page, "hide"), "");
+    assert.equal(await page.locator(".link").count(), 1);
+  });
+
+  test("are named beside their glyph where that hides no other", async () => {
+    const overlaps = await page.evaluate(() => {
+      const boxes = [...document.querySelectorAll(".glyph")].flatMap((glyph) => [...glyph.querySelectorAll("text, path, circle, rect")].map((one) => ({ glyph, box: one.getBoundingClientRect() })));
+      const names = boxes.filter(({ glyph, box }) => glyph.querySelector("text")?.getBoundingClientRect().left === box.left);
+      return [names.length, names.flatMap(({ glyph, box }) => boxes.filter((other) => other.glyph !== glyph && other.box.top < box.bottom && other.box.bottom > box.top &&
+        other.box.left < box.right && other.box.right > box.left).map((other) => `${glyph.dataset.event} over ${other.glyph.dataset.event}`))];
+    });
+    assert.ok(overlaps[0] >= 3, String(overlaps[0]));
+    assert.deepEqual(overlaps[1], []);
   });
 
   test("had no errors", () => assert.deepEqual(problems, []));
@@ -799,6 +971,33 @@ describe("on a phone", () => {
       await close();
     });
 
+  for (const [width, height] of [[568, 320], [844, 390]])
+    for (const name of ["tracks.html", "blobs.html"])
+      test(`on its side, ${width} by ${height} pixels, ${name}: picture and controls both have room`, async () => {
+        const { page, problems, close } = await open(name, { width, height, touch: true });
+        const box = (selector) => page.locator(selector).boundingBox();
+        const stage = await box("#stage");
+        assert.ok(stage.width >= 0.48 * width && stage.height >= 240, JSON.stringify(stage));
+        const controls = ["#play", "#step-back", "#step-forward", "#scrub", "#position", "#speed", "#loop", "#panel-button", "#help-button"];
+        if (name === "tracks.html") controls.push("#event-back", "#event-forward", ".event-types button", ".lane");
+        for (const selector of controls) {
+          const { x, y, width: w, height: h } = await page.locator(selector).first().boundingBox();
+          assert.ok(x >= 0 && y >= 0 && x + w <= width + 0.5 && y + h <= height + 0.5, `${selector}: ${[x, y, w, h]}`);
+        }
+        assert.ok((await box("#scrub")).width >= 80);
+        const text = await page.evaluate(() => { const one = document.getElementById("position"); return [one.scrollWidth, one.clientWidth]; });
+        assert.ok(text[0] <= text[1], text.join());
+        await page.tap("#panel-button");
+        await page.waitForFunction((width) => document.getElementById("panel").getBoundingClientRect().right <= width, width);
+        const panel = await box("#panel");
+        assert.ok(panel.x >= 0.35 * width && panel.height === height, JSON.stringify(panel)); // the picture is still there
+        await page.selectOption("#colour", "axis:0");
+        await page.touchscreen.tap(100, 200);
+        await page.waitForSelector("#panel", { state: "hidden" });
+        assert.deepEqual(problems, []);
+        await close();
+      });
+
   test("one finger turns", async () => {
     const { page, close } = await open("blobs.html", { width: 390, height: 720, touch: true });
     const before = await page.evaluate(() => hyperiso.view.camera.position.toArray());
@@ -945,6 +1144,25 @@ describe("pages that extract", { skip: fieldPages ? false : "built without the e
     const mesh = await open("exact_60.html");
     assert.deepEqual({ ...(await arrays(mesh.page)), attributes: [] }, { ...sixty, attributes: [] });
     await mesh.close();
+  });
+
+  test("an isovalue that no sample reaches is told as it is", async () => {
+    for (const kind of ["mesh", "band", "field"]) {
+      const { page, problems, close } = await open(`beyond_${kind}.html`);
+      assert.equal(await page.textContent("#subtitle"), "density · isovalue 300");
+      assert.equal(await page.textContent("#empty"), "There is no surface at isovalue 300.");
+      if (kind === "field") {
+        assert.deepEqual([await page.inputValue("#isovalue-number"), await page.inputValue("#isovalue")], ["300", "255"]);
+        await slide(page, "#isovalue", 127.5);
+        await settled(page, 127.5);
+        assert.ok(await page.isHidden("#empty"));
+        await page.click("#isovalue-back");
+        await settled(page, 300);
+        assert.ok(await page.isVisible("#empty"));
+      }
+      assert.deepEqual(problems, []);
+      await close();
+    }
   });
 
   test("the page goes on while a surface is extracted, and the latest isovalue wins", async () => {
