@@ -175,7 +175,7 @@ int main(int count, char** arguments) {
   if (!has_field_pages()) return 0;
   write_kinds(exact_blobs(), 127.5, "exact", folder);
   write_kinds(exact_blobs(), 300, "beyond", folder); // no sample reaches it
-  Field turned = exact_blobs(); // by an eighth, and reflected; twice as fast, from 7 on
+  Field turned = exact_blobs();                      // by an eighth, and reflected; twice as fast, from 7 on
   turned.info.world = Affine{{1, 1, 0, 0, 1, -1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0.5}, {10, 20, 30, 7}};
   write_kinds(turned, 127.5, "turned", folder);
   const Field exact = exact_blobs();
