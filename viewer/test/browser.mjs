@@ -3,8 +3,12 @@ import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 
+/// How long is waited for what must come, in milliseconds: on a busy machine it takes its time.
+export const PATIENCE = 180_000;
+
 export async function openBrowser() {
   return chromium.launch({
+    timeout: PATIENCE,
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
     args: ["--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking",
       "--disable-component-update", "--disable-sync", "--use-gl=angle", "--use-angle=swiftshader",
@@ -15,6 +19,7 @@ export async function openBrowser() {
 /// Opens a page file, wherever its path starts; `problems` collects what must not happen: console errors, requests to anywhere.
 export async function openPage(browser, file, { width = 1040, height = 660, colorScheme = "dark", hash = "", scale = 1, touch = false } = {}) {
   const context = await browser.newContext({ viewport: { width, height }, colorScheme, deviceScaleFactor: scale, hasTouch: touch, acceptDownloads: true });
+  context.setDefaultTimeout(PATIENCE);
   const page = await context.newPage();
   const problems = [];
   page.on("console", (message) => {
@@ -29,4 +34,4 @@ export async function openPage(browser, file, { width = 1040, height = 660, colo
   return { page, problems, close: () => context.close() };
 }
 
-export const ready = (page) => page.waitForFunction(() => document.documentElement.dataset.ready === "true", null, { timeout: 60_000 });
+export const ready = (page) => page.waitForFunction(() => document.documentElement.dataset.ready === "true");

@@ -7,7 +7,7 @@ import { dirname, join, relative } from "node:path";
 import { after, before, describe, test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { buildSync } from "esbuild";
-import { openBrowser, openPage, ready } from "./browser.mjs";
+import { openBrowser, openPage, PATIENCE, ready } from "./browser.mjs";
 
 const folder = process.env.HYPERISO_PAGES;
 const here = dirname(fileURLToPath(import.meta.url));
@@ -30,6 +30,19 @@ const openSection = (page, name) => page.evaluate((name) => {
   for (const one of document.querySelectorAll("#panel details"))
     if (one.querySelector("summary").textContent === name) one.open = true;
 }, name);
+/// Waits until so many frames have been drawn.
+const frames = (page, count) => page.evaluate((count) => new Promise((resolve) => {
+  const next = () => (count-- > 0 ? requestAnimationFrame(next) : resolve());
+  next();
+}), count);
+/// Opens the controls of a page on a phone, and waits until they stand still.
+const openPanel = async (page) => {
+  await page.tap("#panel-button");
+  await page.waitForFunction(() => {
+    const panel = document.getElementById("panel");
+    return getComputedStyle(panel).visibility === "visible" && panel.getAnimations().length === 0;
+  });
+};
 /// Moves a slider as a hand does: the value, and the event that tells.
 const slide = (page, selector, value) => page.$eval(selector, (element, value) => {
   element.value = value;
@@ -112,7 +125,7 @@ describe("the page of a surface in space and time", () => {
     await page.click("#play");
     assert.equal(await page.getAttribute("#play", "aria-label"), "Play");
     const stopped = await position(page);
-    await page.waitForTimeout(100);
+    await frames(page, 10);
     assert.equal(await position(page), stopped);
 
     await page.selectOption("#speed", "4");
@@ -439,7 +452,7 @@ describe("the page of a surface in space and time", () => {
     await page.evaluate(() => hyperiso.moveTo(0.4)); // a step, where the plane runs through vertices
     await openSection(page, "Save");
     const saved = async (selector) => {
-      const [download] = await Promise.all([page.waitForEvent("download", { timeout: 60_000 }), page.click(selector)]);
+      const [download] = await Promise.all([page.waitForEvent("download"), page.click(selector)]);
       return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
     };
     const png = await saved("#save-png");
@@ -469,7 +482,7 @@ describe("the page of a surface in space and time", () => {
     const { page, problems, close } = await open("blobs.html", { width: 1000, height: 420 });
     await page.evaluate(() => hyperiso.moveTo(0.4));
     await openSection(page, "Save");
-    const [download] = await Promise.all([page.waitForEvent("download", { timeout: 60_000 }), page.click("#save-frames")]);
+    const [download] = await Promise.all([page.waitForEvent("download"), page.click("#save-frames")]);
     const zip = readFileSync(await download.path());
     assert.equal(zip.readUInt16LE(zip.length - 12), 60);
     assert.match(zip.toString("latin1", 30, 60), /^gaussians_000\.png.PNG/);
@@ -875,7 +888,7 @@ describe("what goes wrong is said", () => {
     const page = await context.newPage();
     if (prepare) await page.addInitScript(prepare);
     await page.goto(`file://${file}`);
-    await page.waitForSelector("#loading.failed", { timeout: 20_000 });
+    await page.waitForSelector("#loading.failed", { timeout: PATIENCE });
     const text = await page.textContent("#loading-text");
     await context.close();
     return text;
@@ -953,9 +966,7 @@ describe("on a phone", () => {
       assert.deepEqual(edges.slice(0, 2), [0, 0]);
       assert.ok(edges[2] > 30, edges.join());
       assert.ok(await page.isHidden("#panel"));
-      await page.tap("#panel-button");
-      await page.waitForSelector("#panel", { state: "visible" });
-      await page.waitForTimeout(300);
+      await openPanel(page);
       await page.selectOption("#colour", "axis:0");
       assert.equal(await state(page, "colour"), "axis:0");
       const panel = await page.locator("#panel").boundingBox();
@@ -987,8 +998,7 @@ describe("on a phone", () => {
         assert.ok((await box("#scrub")).width >= 80);
         const text = await page.evaluate(() => { const one = document.getElementById("position"); return [one.scrollWidth, one.clientWidth]; });
         assert.ok(text[0] <= text[1], text.join());
-        await page.tap("#panel-button");
-        await page.waitForFunction((width) => document.getElementById("panel").getBoundingClientRect().right <= width, width);
+        await openPanel(page);
         const panel = await box("#panel");
         assert.ok(panel.x >= 0.35 * width && panel.height === height, JSON.stringify(panel)); // the picture is still there
         await page.selectOption("#colour", "axis:0");
@@ -1026,7 +1036,7 @@ describe("pages that extract", { skip: fieldPages ? false : "built without the e
     return probe.picture().sum;
   }));
   const settled = (page, isovalue) => page.waitForFunction((isovalue) => hyperiso.shownIsovalue === isovalue &&
-    document.getElementById("isovalue-progress").style.visibility === "hidden", isovalue, { timeout: 20_000 });
+    document.getElementById("isovalue-progress").style.visibility === "hidden", isovalue);
 
   test("the surface, a band and the whole field give the same arrays and the same pixels", async () => {
     const found = [];
@@ -1218,7 +1228,7 @@ describe("pages that extract", { skip: fieldPages ? false : "built without the e
       const context = await browser.newContext();
       const page = await context.newPage();
       await page.goto(`file://${broken}`);
-      await page.waitForSelector("#loading.failed", { timeout: 20_000 });
+      await page.waitForSelector("#loading.failed", { timeout: PATIENCE });
       assert.match(await page.textContent("#loading-text"), expected);
       await context.close();
     }
