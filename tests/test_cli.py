@@ -356,6 +356,16 @@ class Output(Case):
         self.assert_refused(1, "sample", "noise", "--dims", "20,20,20,9", "-o", "n.nrrd", "--memory", "100K", words=["memory"])
         self.ok("extract", field, "--iso", "0.5", "--memory", "2G")
 
+    def test_memory_limit_counts_what_methods_and_measures_hold(self):
+        field = self.sample("noise", "12,12,12,3")
+        barycentric = "extract", field, "--iso", "0.5", "--method", "barycentric"
+        self.assert_refused(1, *barycentric, "--memory", "20M", words=["simplices so far", "--memory"])
+        made = self.ok(*barycentric, "--memory", "80M", "--json").json()
+        self.assertLess(made["peak_memory_bytes"], 110 << 20)
+        self.assert_refused(1, *barycentric, "--memory", "80M", "--measure", words=["--measure", "left", "--memory"])
+        six = self.sample("noise", "4,4,3,3,3,3")
+        self.assert_refused(1, "extract", six, "--iso", "0.5", "--method", "simplicial", "--memory", "4M", words=["so far"])
+
     def test_huge_field_is_refused_not_attempted(self):
         self.assert_refused(1, "sample", "ball", "--dims", "100000,100000,10000", "-o", "a.raw", words=["memory"])
         self.assert_refused(2, "sample", "ball", "--dims", "4294967296,4294967296,4294967296", "-o", "a.raw")

@@ -4,9 +4,9 @@
 #include "check.hpp"
 #include "extract/extract_with.hpp"
 #include "extract/slab_engine.hpp"
+#include "peak_memory.hpp"
 
 #include <cstring>
-#include <fstream>
 #include <gtest/gtest.h>
 #include <limits>
 
@@ -149,21 +149,6 @@ OwnedField<float, D> with_missing(const std::array<std::int64_t, D>& dims, doubl
   return field;
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-
-// A figure of /proc/self/status, in bytes; 0 if there is none.
-std::uint64_t memory_figure(const std::string& key) {
-  std::ifstream file("/proc/self/status");
-  for (std::string line; std::getline(file, line);)
-    if (line.starts_with(key)) return std::stoull(line.substr(key.size() + 1)) * 1024;
-  return 0;
-}
-// From here on the peak counts anew.
-bool forget_peak() {
-  std::ofstream file("/proc/self/clear_refs");
-  return static_cast<bool>(file << "5" << std::flush);
-}
-
 // Balls that move, made when they are asked for.
 class MovingBalls final : public StepSource {
  public:
@@ -191,8 +176,6 @@ class MovingBalls final : public StepSource {
  private:
   FieldInfo info_;
 };
-
-#endif
 
 } // namespace
 
@@ -414,26 +397,22 @@ TEST(Stream, what_cannot_be_streamed_is_told) {
   EXPECT_EQ(stream(in_six, 0, sink).error().code, Code::unsupported_dimension);
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-
 // Measured by the system: two steps, one slab's mesh and a tenth; and what the threads take and the rounding
 // to large pages, which is no share of the field: 268 MB here.
 TEST(Stream, peak_memory_is_that_of_two_steps_and_a_slab) {
   MovingBalls warm_up(16, 4), source(128, 32);
   ASSERT_TRUE(stream(warm_up, 10, [](SurfaceSlab&) { return Status{}; })); // makes the table
-  if (memory_figure("VmHWM:") == 0 || !forget_peak()) GTEST_SKIP() << "the system tells no peak";
-  const std::uint64_t before = memory_figure("VmRSS:");
   std::uint64_t largest = 0, simplices = 0;
-  ASSERT_TRUE(stream(source, 300, [&](SurfaceSlab& slab) {
-    largest = std::max<std::uint64_t>(largest, slab.mesh.positions.bytes() + slab.mesh.simplices.bytes() +
-                                                   sizeof(GridEdge) * slab.mesh.edges.size());
-    simplices += slab.mesh.simplex_count();
-    return Status{};
-  }));
+  const auto peak = check::peak_memory_of([&] {
+    EXPECT_TRUE(stream(source, 300, [&](SurfaceSlab& slab) {
+      largest = std::max<std::uint64_t>(largest, slab.mesh.positions.bytes() + slab.mesh.simplices.bytes() +
+                                                     sizeof(GridEdge) * slab.mesh.edges.size());
+      simplices += slab.mesh.simplex_count();
+      return Status{};
+    }));
+  });
+  if (!peak) GTEST_SKIP() << "the system tells no peak";
   ASSERT_GT(simplices, 1'000'000u);
   const std::uint64_t step = 128 * 128 * 128 * sizeof(float);
-  EXPECT_LT(memory_figure("VmHWM:") - before, (2 * step + largest) * 11 / 10 + (12u << 20))
-      << "a slab takes " << largest;
+  EXPECT_LT(*peak, (2 * step + largest) * 11 / 10 + (12u << 20)) << "a slab takes " << largest;
 }
-
-#endif

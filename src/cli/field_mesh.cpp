@@ -43,7 +43,10 @@ Outcome finish(const Mesh& mesh, const FieldMeshOptions& options, const FieldInf
   outcome.simplices = mesh.simplex_count();
   outcome.active_cells = mesh.active_cells;
   outcome.path = path;
-  if (options.measure) outcome.measure = measure_of(mesh, quiet);
+  if (options.measure) {
+    check_memory_to_measure(mesh, options.machine);
+    outcome.measure = measure_of(mesh, quiet);
+  }
   if (options.self_intersections) outcome.self_intersections = self_intersections_of(mesh, quiet);
   if (path.empty()) return outcome;
 

@@ -140,7 +140,10 @@ void make_cuts(const Slice& options, const Plan& plan, std::vector<Outcome>& out
     if (outcome.simplices == 0 && !options.printing.quiet)
       print_warning(
           "the plane meets no part of the surface; 'hyperiso info' tells the ranges of axes and values");
-    if (options.measure) outcome.measure = take(measure(mesh));
+    if (options.measure) {
+      check_memory_to_measure(mesh, options.machine);
+      outcome.measure = take(measure(mesh));
+    }
     if (outcome.path.empty()) continue;
     const Stopwatch writing;
     take(write_mesh(mesh, outcome.path, options.output.write_options({}, files)));

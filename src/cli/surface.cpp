@@ -48,6 +48,14 @@ Measure measure_of(const Mesh& mesh, bool quiet) {
   return take(measure(mesh));
 }
 
+void check_memory_to_measure(const Mesh& mesh, const MachineOptions& machine) {
+  const std::uint64_t needed = mesh.simplices.size() * 8 + mesh.vertex_count() * 16, // as measure.hpp says
+      left = machine.memory_left();
+  if (needed > left)
+    throw Failure{{Code::out_of_memory, text("--measure of ", mesh.simplex_count(), " simplices needs ",
+                                             byte_size(needed), ", and ", byte_size(left), " are left")}};
+}
+
 bool is_mesh_file(const std::string& path) {
   const std::string suffix = std::filesystem::path(path).extension().string();
   for (const char* known : {".vtu", ".vtp", ".ply", ".stl", ".obj", ".off"})

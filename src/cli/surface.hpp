@@ -22,6 +22,8 @@ std::vector<Axis> axes_of(const Mesh& mesh);
 
 Mesh mesh_in(const std::string& path, bool quiet);
 Measure measure_of(const Mesh& mesh, bool quiet);
+// Fails if --measure takes more memory than is left.
+void check_memory_to_measure(const Mesh& mesh, const MachineOptions& machine);
 
 // Whether a file holds a mesh, by its suffix.
 bool is_mesh_file(const std::string& path);

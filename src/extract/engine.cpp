@@ -1,10 +1,10 @@
 #include "extract/engine.hpp"
 
 #include "core/parallel.hpp"
-#include "core/text.hpp"
 #include "extract/barycentric.hpp"
 #include "extract/missing.hpp"
 #include "extract/slab_engine.hpp"
+#include "extract/surface_memory.hpp"
 #include "extract/units.hpp"
 #include "extract/vertex_output.hpp"
 #include "extract/workspace.hpp"
@@ -219,13 +219,11 @@ class Engine {
 
   Status check_memory() {
     wide_indices_ = engine_options_.wide_indices || first_vertex_ + vertices_ > UINT32_MAX;
-    const std::uint64_t index_bytes = wide_indices_ ? sizeof(std::uint64_t) : sizeof(std::uint32_t);
     if (simplices_ > SIZE_MAX / (D * sizeof(std::uint64_t))) throw std::bad_alloc();
-    const std::uint64_t needed = vertices_ * output_->bytes_per_vertex() + simplices_ * D * index_bytes;
-    if (needed > options_.memory_limit)
-      return Error{Code::out_of_memory,
-                   text("the surface of ", vertices_, " vertices and ", simplices_, " simplices needs ",
-                        byte_size(needed), ", the limit is ", byte_size(options_.memory_limit))};
+    const std::uint64_t needed =
+        vertices_ * output_->bytes_per_vertex() + simplices_ * D * bytes_per_index(wide_indices_);
+    if (Status fits = hyperiso::check_memory(vertices_, simplices_, needed, options_.memory_limit); !fits)
+      return fits;
     output_->finish(vertices_);
     mesh_.active_cells = active_cells_;
     mesh_.simplices.reset(static_cast<std::size_t>(simplices_) * D, wide_indices_);
@@ -265,8 +263,8 @@ class Engine {
 
   void emit_unit(const UnitCells& unit, std::uint64_t first_simplex) {
     if (unit.simplices == 0) return;
-    const std::size_t index_bytes = wide_indices_ ? sizeof(std::uint64_t) : sizeof(std::uint32_t);
-    auto* corners = static_cast<std::byte*>(mesh_.simplices.data()) + first_simplex * D * index_bytes;
+    auto* corners =
+        static_cast<std::byte*>(mesh_.simplices.data()) + first_simplex * D * bytes_per_index(wide_indices_);
     const EmitJob<D> job{&grid_,  &table_, &memory_.numbers, &memory_.workers[unit.worker].cells, &unit,
                          corners, true};
     wide_indices_ ? kernels_.emit_wide(job) : kernels_.emit_narrow(job);

@@ -4,13 +4,13 @@
 // not.
 
 #include "core/sign.hpp"
-#include "core/text.hpp"
 #include "extract/cell_corners.hpp"
-#include "hyperiso/extract.hpp"
+#include "extract/surface_memory.hpp"
 #include "table/entry_cache.hpp"
 
 #include <algorithm>
 #include <optional>
+#include <vector>
 
 namespace hyperiso {
 
@@ -53,7 +53,8 @@ void for_each_cell(const std::array<std::int64_t, D>& dims, Use&& use) {
 template <int D>
 class CellEntries {
  public:
-  explicit CellEntries(Method method) : method_(method) {}
+  CellEntries(Method method, std::uint64_t memory_limit)
+      : method_(method), kept_bytes_(kept_bytes(method, memory_limit)) {}
 
   // As for_each_cell_corner does.
   template <class Use>
@@ -75,43 +76,116 @@ class CellEntries {
     for_each_cell_corner<D>(method_, labels, use);
   }
 
- private:
-  static constexpr std::size_t kept_bytes = D == 6 ? 64 << 20 : 0;
+  // The most that is kept, with the places where it is looked up.
+  std::uint64_t bytes() const { return kept_bytes_ + kept_bytes_ / 8; }
 
-  Method method_;
-  EntryCache<std::uint64_t> cache_{kept_bytes};
+ private:
+  static std::size_t kept_bytes(Method method, std::uint64_t memory_limit) {
+    if (D != 6 || method == Method::simplicial) return 0;
+    return static_cast<std::size_t>(std::min<std::uint64_t>(64 << 20, memory_limit / 8));
+  }
+
+  const Method method_;
+  const std::size_t kept_bytes_;
+  EntryCache<std::uint64_t> cache_{kept_bytes_};
   EntryCache<std::uint64_t>::Reader reader_{cache_};
   std::vector<std::uint8_t> made_;
 };
 
-// The grid edges of the simplices' corners, D for each simplex, cell by cell; counts the active cells.
+// The simplices while their vertices have no numbers: a corner takes less than the number of its grid edge.
+template <int D>
+struct CellSimplices {
+  using EdgeEnds = std::array<std::uint8_t, 2>; // cube vertices, lower and upper
+  struct Cell {
+    std::array<std::int64_t, D> lowest; // sample
+    std::uint64_t corners_end;          // in `corners`
+  };
+  Array<Cell> cells;       // active ones, in memory order
+  Array<EdgeEnds> corners; // D for each simplex
+
+  std::uint64_t bytes() const { return cells.size() * sizeof(Cell) + corners.size() * sizeof(EdgeEnds); }
+};
+
+template <int D>
+GridEdge edge_in_cell(const std::array<std::int64_t, D>& dims, const std::array<std::int64_t, D>& lowest,
+                      const typename CellSimplices<D>::EdgeEnds& ends) {
+  std::array<std::int64_t, D> upper = lowest;
+  for (int axis = 0; axis < D; ++axis) upper[axis] += ends[1] >> axis & 1;
+  return grid_edge<D>(dims, upper, ends[0] ^ ends[1]);
+}
+
+// Edges of the grid, each once and ascending, in hardly more memory than twice their own.
+class SortedEdges {
+ public:
+  explicit SortedEdges(Array<GridEdge>& edges) : edges_(edges) { edges_.reset(0); }
+
+  void add(GridEdge edge) { edges_.push_back(edge); }
+  // Sorts what was added if it is as much as there was before.
+  void tidy() {
+    if (edges_.size() >= 2 * sorted_ + least_to_sort) finish();
+  }
+  void finish() {
+    std::ranges::sort(edges_);
+    edges_.resize(static_cast<std::size_t>(std::unique(edges_.begin(), edges_.end()) - edges_.begin()));
+    sorted_ = edges_.size();
+  }
+
+  std::size_t sorted() const { return sorted_; } // different ones, at least
+  std::uint64_t bytes() const { return edges_.size() * sizeof(GridEdge); }
+
+ private:
+  static constexpr std::size_t least_to_sort = 1 << 12;
+
+  Array<GridEdge>& edges_;
+  std::size_t sorted_ = 0;
+};
+
+// The simplices of all cells; in `edges` those of the grid that carry their vertices.
 template <class T, int D, bool Above>
-Status find_corners(const FieldView<const T, D>& field, SignRule<T, Above> rule,
-                    const ExtractOptions& options, std::vector<GridEdge>& corners,
-                    std::uint64_t& active_cells) {
+Status find_simplices(const FieldView<const T, D>& field, SignRule<T, Above> rule,
+                      const ExtractOptions& options, CellSimplices<D>& found, Array<GridEdge>& edges) {
   const auto dims = field.dims();
-  CellEntries<D> entries(options.method);
+  const std::uint64_t position_bytes = bytes_per_vertex(D, options.precision == Precision::f64, false);
+  constexpr std::uint64_t corner_bytes = // and the number it will be
+      sizeof(typename CellSimplices<D>::EdgeEnds) + sizeof(std::uint32_t);
+  CellEntries<D> entries(options.method, options.memory_limit);
+  std::vector<bool> seen(std::size_t{1} << 2 * D); // edges of one cell
+  SortedEdges sorted(edges);
   Status status;
   for_each_cell<D>(dims, [&](const std::array<std::int64_t, D>& cell) {
     if (cell[0] == 0 && options.progress) {
       const double share = static_cast<double>(cell[D - 1]) / static_cast<double>(dims[D - 1] - 1);
       if (!options.progress(share)) status = Error{Code::cancelled, "the extraction was cancelled"};
     }
-    if (corners.size() > options.memory_limit / sizeof(std::uint32_t))
-      status = Error{Code::out_of_memory,
-                     text("the surface has more than ", corners.size() / D,
-                          " simplices, which need more than the limit of ", byte_size(options.memory_limit))};
     if (!status) return false;
     const auto labels = active_cell_labels<T, D, Above>(field, cell, rule);
     if (!labels) return true;
-    ++active_cells;
+    const std::size_t first = found.corners.size();
+    const std::uint64_t held = found.bytes() + first * sizeof(std::uint32_t) + sorted.bytes() +
+                               sorted.sorted() * position_bytes + entries.bytes();
+    const std::uint64_t most =
+        first + (options.memory_limit - std::min(options.memory_limit, held)) / corner_bytes;
+    bool fits = true;
     entries.for_each_corner(*labels, [&](unsigned lower, unsigned upper) {
-      std::array<std::int64_t, D> sample = cell;
-      for (int axis = 0; axis < D; ++axis) sample[axis] += upper >> axis & 1;
-      corners.push_back(grid_edge<D>(dims, sample, lower ^ upper));
+      fits = fits && found.corners.size() < most;
+      if (fits) found.corners.push_back({static_cast<std::uint8_t>(lower), static_cast<std::uint8_t>(upper)});
     });
+    if (!fits) {
+      status = more_than_fits(sorted.sorted(), found.corners.size() / D, options.memory_limit);
+      return false;
+    }
+    found.cells.push_back({cell, found.corners.size()});
+    seen.assign(seen.size(), false);
+    for (std::size_t corner = first; corner < found.corners.size(); ++corner) {
+      const auto ends = found.corners[corner];
+      const std::size_t edge = std::size_t{ends[0]} << D | ends[1];
+      if (!seen[edge]) sorted.add(edge_in_cell<D>(dims, cell, ends));
+      seen[edge] = true;
+    }
+    sorted.tidy();
     return true;
   });
+  sorted.finish();
   return status;
 }
 
@@ -129,44 +203,53 @@ std::array<double, D> reference_position(const FieldView<const T, D>& field, Gri
   return position;
 }
 
+// The corners of the mesh, by the places of their edges among those that carry its vertices.
+template <int D>
+void number_corners(const std::array<std::int64_t, D>& dims, const CellSimplices<D>& found,
+                    const Array<GridEdge>& edges, bool mirrored, SimplexMesh<D>& mesh) {
+  mesh.simplices.reset(found.corners.size(), edges.size() > UINT32_MAX);
+  std::size_t corner = 0;
+  for (const auto& cell : found.cells)
+    for (; corner < cell.corners_end; ++corner) {
+      const GridEdge edge = edge_in_cell<D>(dims, cell.lowest, found.corners[corner]);
+      const auto vertex = std::ranges::lower_bound(edges, edge) - edges.begin();
+      const std::size_t place = corner % D;
+      mesh.simplices.set(mirrored && place < 2 ? corner - place + (1 - place) : corner,
+                         static_cast<std::uint64_t>(vertex));
+    }
+}
+
 // Replaces what `mesh` holds. Throws std::bad_alloc.
 template <class T, int D>
 Status extract_plainly(const FieldView<const T, D>& field, double isovalue, const ExtractOptions& options,
                        SimplexMesh<D>& mesh) {
-  mesh.active_cells = 0;
-  std::vector<GridEdge> corners;
-  const Status status =
-      options.inside == Inside::above
-          ? find_corners(field, SignRule<T, true>(isovalue), options, corners, mesh.active_cells)
-          : find_corners(field, SignRule<T, false>(isovalue), options, corners, mesh.active_cells);
-  if (!status) return status;
-  const auto reversed_axes =
-      std::ranges::count_if(field.grid.axes, [](const Axis& a) { return !a.increasing(); });
-  if (reversed_axes % 2 == 1)
-    for (std::size_t simplex = 0; simplex < corners.size(); simplex += D)
-      std::swap(corners[simplex], corners[simplex + 1]);
-
-  std::vector<GridEdge> edges = corners;
-  std::ranges::sort(edges);
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-
-  mesh.positions.reset(edges.size() * D, options.precision == Precision::f64);
-  for (std::size_t vertex = 0; vertex < edges.size(); ++vertex) {
-    const auto position = reference_position(field, edges[vertex], isovalue);
-    for (std::size_t axis = 0; axis < D; ++axis) mesh.positions.set(vertex * D + axis, position[axis]);
-  }
-  mesh.simplices.reset(corners.size(), edges.size() > UINT32_MAX);
-  for (std::size_t corner = 0; corner < corners.size(); ++corner) {
-    const auto vertex = std::ranges::lower_bound(edges, corners[corner]) - edges.begin();
-    mesh.simplices.set(corner, static_cast<std::uint64_t>(vertex));
-  }
-  mesh.edges.clear();
   mesh.grid_axes.clear();
   mesh.attributes.clear();
-  if (options.keep_edges) {
-    mesh.edges.assign(edges.begin(), edges.end());
-    mesh.grid_axes.assign(field.grid.axes.begin(), field.grid.axes.end());
+  CellSimplices<D> found;
+  Status status = options.inside == Inside::above
+                      ? find_simplices(field, SignRule<T, true>(isovalue), options, found, mesh.edges)
+                      : find_simplices(field, SignRule<T, false>(isovalue), options, found, mesh.edges);
+  if (!status) return status;
+  mesh.active_cells = found.cells.size();
+  const std::size_t vertices = mesh.edges.size();
+  const bool wide = options.precision == Precision::f64;
+  status = check_memory(vertices, found.corners.size() / D,
+                        vertices * bytes_per_vertex(D, wide, true) + found.bytes() +
+                            found.corners.size() * bytes_per_index(vertices > UINT32_MAX),
+                        options.memory_limit);
+  if (!status) return status;
+
+  mesh.positions.reset(vertices * D, wide);
+  for (std::size_t vertex = 0; vertex < vertices; ++vertex) {
+    const auto position = reference_position(field, mesh.edges[vertex], isovalue);
+    for (std::size_t axis = 0; axis < D; ++axis) mesh.positions.set(vertex * D + axis, position[axis]);
   }
+  const auto falling = std::ranges::count_if(field.grid.axes, [](const Axis& a) { return !a.increasing(); });
+  number_corners<D>(field.dims(), found, mesh.edges, falling % 2 == 1, mesh);
+  if (options.keep_edges)
+    mesh.grid_axes.assign(field.grid.axes.begin(), field.grid.axes.end());
+  else
+    mesh.edges = {};
   return {};
 }
 

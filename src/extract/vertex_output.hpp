@@ -3,6 +3,7 @@
 
 #include "extract/kernels.hpp"
 #include "extract/stream_copy.hpp"
+#include "extract/surface_memory.hpp"
 
 #include <mutex>
 #include <shared_mutex>
@@ -15,13 +16,14 @@ class VertexOutput {
   // `limit`: bytes that positions and edges may take.
   VertexOutput(Mesh& mesh, bool wide, bool keep_edges, std::uint64_t limit)
       : mesh_(mesh), keep_edges_(keep_edges),
-        position_bytes_(static_cast<std::size_t>(mesh.dimension) * (wide ? sizeof(double) : sizeof(float))),
-        most_(limit / bytes_per_vertex()) {
+        position_bytes_(hyperiso::bytes_per_vertex(mesh.dimension, wide, false)),
+        bytes_per_vertex_(hyperiso::bytes_per_vertex(mesh.dimension, wide, keep_edges)),
+        most_(limit / bytes_per_vertex_) {
     mesh_.positions.reset(0, wide);
     mesh_.edges.reset(0);
   }
 
-  std::uint64_t bytes_per_vertex() const { return position_bytes_ + (keep_edges_ ? sizeof(GridEdge) : 0); }
+  std::uint64_t bytes_per_vertex() const { return bytes_per_vertex_; }
 
   // Writes the batch from vertex `first` on and empties it. Beyond the limit nothing is written.
   void write(std::uint64_t first, VertexBatch& batch) {
@@ -55,6 +57,7 @@ class VertexOutput {
   Mesh& mesh_;
   const bool keep_edges_;
   const std::size_t position_bytes_;
+  const std::uint64_t bytes_per_vertex_;
   const std::uint64_t most_;
   std::shared_mutex mutex_;
   std::size_t room_ = 0;
