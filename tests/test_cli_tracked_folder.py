@@ -5,13 +5,14 @@
 
 import csv
 import json
+import math
 import os
 import re
 import struct
 import subprocess
 import unittest
 
-from cli_case import Case, HAS_VIEW, PROGRAM
+from cli_case import Case, HAS_VIEW, PROGRAM, Run
 
 
 def metadata(page):
@@ -70,6 +71,25 @@ class Pages(Folder):
         self.track("--iso", "3.5", field="a.npy")
         self.ok("view", "tracks", "-o", "a.html")
         self.assertTrue(metadata(self.folder / "a.html")["time"])
+
+    # Two surfaces around one region, and a ball in it: as surfaces three tracks, as regions two.
+    def test_the_surface_goes_by_the_regions_that_were_tracked(self):
+        axis = [x / 8 - 1 for x in range(17)]
+        radius = [math.hypot(x, y, z) for z in axis for y in axis for x in axis]
+        shell = [max(0.2 - abs(r - 0.65), 0.2 - r) for r in radius]
+        (self.folder / "shell.raw").write_bytes(struct.pack(f"<{2 * len(shell)}f", *shell, *shell))
+        raw = ["--dims", "17,17,17,2", "--type", "f32", "--iso", "0.05"]
+        for options, count in (([], 3), (["--track", "region"], 2)):
+            self.track(*raw, *options, field="shell.raw")
+            for payload in (["mesh", "band"] if self.has_field_pages() else ["mesh"]):
+                self.ok("view", "tracks", "--payload", payload, "-o", "a.html")
+                page = metadata(self.folder / "a.html")
+                self.assertEqual((len(page["tracking"]["tracks"]), page["tracking"]["regions"]), (count, bool(options)))
+                self.assertEqual(page["attributes"], [{"kind": "label", "labels": list(range(count)), "name": "track"}])
+
+    def has_field_pages(self):
+        return Run("view", "shell.raw", "--dims", "17,17,17,2", "--type", "f32", "--iso", "0.05", "--payload", "band",
+                   "-o", "probe.html").code == 0
 
     def test_its_title_is_the_folders_name(self):
         self.track(folder="blobs at half")
@@ -194,9 +214,8 @@ class Source(Folder):
             self.assert_refused(2, *self.SHOW, *options, words=["tracks", *words])
         self.ok(*self.SHOW, "--iso", "0.5", "--steps", "1:", "--method", "hull", "--tracks", "--precision", "f64")
 
-    def test_regions_and_single_tracks_are_refused_with_what_would_work(self):
-        for options, words in [(["--iso", "0.5", "--track", "region"], ["regions", "--track surface", "tracks.pvd"]),
-                               (["--range", "0.3:0.6"], ["regions", "--iso"]),
+    def test_what_one_surface_does_not_show_is_refused_with_what_would_work(self):
+        for options, words in [(["--range", "0.3:0.6"], ["0.3:0.6", "two surfaces", "--iso", "tracks.pvd"]),
                                (["--iso", "0.5", "--select", "all:0"], ["--select"])]:
             self.track(folder="all")
             self.track(*options)

@@ -13,6 +13,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 namespace hyperiso {
 namespace {
@@ -260,6 +262,152 @@ TEST(view_tracks, those_at_steps_are_those_of_the_steps) {
   options.dims = {20, 18, 12};
   options.time = true;
   expect_tracks_of_steps<3>(*make_sample("noise", options), 0.7);
+}
+
+// A field by a function of the place, time last: -1 to 1 along each axis of space, 0 to 1 in time.
+template <class Function>
+Field field_of(std::vector<std::int64_t> dims, Function&& function) {
+  FieldInfo info;
+  const std::size_t time = dims.size() - 1;
+  for (std::size_t k = 0; k <= time; ++k) {
+    const double low = k == time ? 0 : -1;
+    info.axes.push_back(
+        {.count = dims[k], .origin = low, .spacing = (1 - low) / static_cast<double>(dims[k] - 1)});
+  }
+  info.has_time = true;
+  const NewField made = *allocate_field(info);
+  auto* sample = reinterpret_cast<float*>(made.samples);
+  std::vector<std::int64_t> index(dims.size(), 0);
+  for (bool more = true; more;) {
+    std::vector<double> place;
+    for (std::size_t k = 0; k <= time; ++k) place.push_back(info.axes[k].coordinate(index[k]));
+    *sample++ = static_cast<float>(function(place));
+    std::size_t k = 0;
+    while (k <= time && ++index[k] == dims[k]) index[k++] = 0;
+    more = k <= time;
+  }
+  return made.field;
+}
+
+std::vector<std::int32_t> tracks_of_regions(const Field& field, double isovalue, Method method,
+                                            const SimplexMesh<4>& surface) {
+  FieldSteps steps(field);
+  TrackOptions options;
+  options.extraction.method = method;
+  options.tracked = Tracked::region;
+  TrackingGraph graph = *track(steps, isovalue, options);
+  EXPECT_TRUE(use_boundary_pieces(graph, steps, options));
+  return tracks_of_vertices(surface, graph);
+}
+
+// The two surfaces of a shell bound one region; a ball in its middle is another.
+TEST(view_tracks, walls_of_a_cavity_go_by_the_region_around_it) {
+  const Field shell = field_of({17, 17, 17, 3}, [](const std::vector<double>& at) {
+    const double radius = std::hypot(at[0], at[1], at[2]) - 0.05 * at[3];
+    return std::max(0.2 - std::abs(radius - 0.65), 0.2 - radius);
+  });
+  for (const Method method : {Method::hull, Method::simplicial}) {
+    ExtractOptions extraction;
+    extraction.method = method;
+    const auto surface = *extract(shell.view<float, 4>(), 0.05, extraction);
+    const auto tracks = tracks_of_regions(shell, 0.05, method, surface);
+    std::array<std::int32_t, 3> found{-2, -2, -2}; // ball, inner wall, outer wall
+    for (std::size_t vertex = 0; vertex < tracks.size(); ++vertex) {
+      const auto at = [&](std::size_t axis) { return surface.positions[4 * vertex + axis]; };
+      const double radius = std::hypot(at(0), at(1), at(2)) - 0.05 * at(3);
+      std::int32_t& track = found[radius < 0.3 ? 0 : radius < 0.65 ? 1 : 2];
+      if (track == -2) track = tracks[vertex];
+      ASSERT_EQ(track, tracks[vertex]) << radius;
+    }
+    EXPECT_EQ(found[1], found[2]);
+    EXPECT_NE(found[0], found[1]);
+    EXPECT_GE(std::min(found[0], found[1]), 0);
+  }
+}
+
+// What hangs together at a step, found by search among the samples: `hull` joins all that is inside of a
+// cell.
+class InsideOfStep {
+ public:
+  InsideOfStep(const Field& field, std::int64_t step, double isovalue) {
+    const auto view = field.view<float, 4>();
+    for (int axis = 0; axis < 3; ++axis) dims_[axis] = view.dims()[axis];
+    body_.assign(static_cast<std::size_t>(dims_[0] * dims_[1] * dims_[2]), -1);
+    const auto inside = [&](const Sample& at) { return view.at({at[0], at[1], at[2], step}) >= isovalue; };
+    for (std::size_t first = 0; first < body_.size(); ++first) {
+      if (body_[first] >= 0 || !inside(sample(first))) continue;
+      const auto body = static_cast<std::int32_t>(first);
+      std::vector<std::size_t> next{first};
+      body_[first] = body;
+      while (!next.empty()) {
+        const Sample from = sample(next.back());
+        next.pop_back();
+        for (int way = 0; way < 27; ++way) {
+          const Sample to{from[0] + way % 3 - 1, from[1] + way / 3 % 3 - 1, from[2] + way / 9 - 1};
+          bool is_there = true;
+          for (int axis = 0; axis < 3; ++axis) is_there &= to[axis] >= 0 && to[axis] < dims_[axis];
+          if (!is_there || !inside(to) || body_[number(to)] >= 0) continue;
+          body_[number(to)] = body;
+          next.push_back(number(to));
+        }
+      }
+    }
+  }
+
+  using Sample = std::array<std::int64_t, 3>;
+  std::int32_t body(const Sample& at) const { return body_[number(at)]; } // -1: outside
+
+ private:
+  std::size_t number(const Sample& at) const {
+    return static_cast<std::size_t>((at[2] * dims_[1] + at[1]) * dims_[0] + at[0]);
+  }
+  Sample sample(std::size_t number) const {
+    const auto at = static_cast<std::int64_t>(number);
+    return {at % dims_[0], at / dims_[0] % dims_[1], at / dims_[0] / dims_[1]};
+  }
+
+  Sample dims_{};
+  std::vector<std::int32_t> body_;
+};
+
+TEST(view_tracks, those_of_regions_are_those_of_what_hangs_together_inside) {
+  SampleOptions options;
+  options.dims = {11, 10, 9, 5};
+  const Field field = *make_sample("noise", options);
+  for (const double isovalue : {0.6, 0.9}) {
+    const auto surface = *extract(field.view<float, 4>(), isovalue);
+    const auto tracks = tracks_of_regions(field, isovalue, Method::hull, surface);
+    std::array<std::int64_t, 4> dims;
+    for (int axis = 0; axis < 4; ++axis) dims[axis] = field.info.axes[axis].count;
+    std::vector<InsideOfStep> steps;
+    for (std::int64_t step = 0; step < dims[3]; ++step) steps.emplace_back(field, step, isovalue);
+    std::map<std::pair<std::int64_t, std::int32_t>, std::int32_t> track_of_body, body_of_track;
+    for (std::size_t vertex = 0; vertex < tracks.size(); ++vertex) {
+      const auto ends = grid_edge_ends<4>(dims, surface.edges[vertex]);
+      if (ends.direction >> 3 & 1) continue; // between steps
+      const std::int64_t step = ends.upper[3];
+      const auto body_at = [&](const std::array<std::int64_t, 4>& at) {
+        return steps[static_cast<std::size_t>(step)].body({at[0], at[1], at[2]});
+      };
+      const std::int32_t body = std::max(body_at(ends.lower), body_at(ends.upper));
+      ASSERT_EQ(track_of_body.emplace(std::pair{step, body}, tracks[vertex]).first->second, tracks[vertex]);
+      ASSERT_EQ(body_of_track.emplace(std::pair{step, tracks[vertex]}, body).first->second, body);
+    }
+    EXPECT_GT(track_of_body.size(), 5u) << isovalue;
+  }
+}
+
+TEST(view_tracks, regions_between_two_isovalues_have_no_one_surface) {
+  SampleOptions options;
+  options.dims = {6, 6, 6, 3};
+  FieldSteps steps(*make_sample("gaussians", options));
+  TrackOptions tracking;
+  tracking.tracked = Tracked::region;
+  tracking.upper_isovalue = 0.8;
+  TrackingGraph graph = *track(steps, 0.4, tracking);
+  const Status status = use_boundary_pieces(graph, steps, tracking);
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().code, Code::invalid_argument);
 }
 
 TEST(view_tracks, without_edges_there_are_none) {

@@ -26,7 +26,7 @@ struct PageOptions {
                          ///< name of an attribute; empty: the page decides
   std::vector<std::string> notes; ///< what a reader has to know, for example that samples were left out
   /// Tracks and events to show under the scene, and to colour by; of the field that the mesh is the surface
-  /// of.
+  /// of. A graph of regions after `use_boundary_pieces`.
   const TrackingGraph* tracking = nullptr;
   /// Grid to world coordinates, where the mesh has been moved so: `axes` are then those of the grid, and they
   /// and what `tracking` says of times and places are moved along. `write_field_page` takes that of its
@@ -40,6 +40,15 @@ struct PageOptions {
 bool has_viewer();
 /// Whether it was also built with the extraction core for pages; `write_field_page` works only then.
 bool has_field_pages();
+
+/// Makes a graph of regions one that `PageOptions::tracking` takes: each vertex of the surface at a step goes
+/// by the region that it bounds, the wall of a cavity by the region around it. `pieces` are then those of the
+/// surface, with an entry for each of its vertices. A graph of surfaces stays as it is.
+///
+/// Requires that `graph` came from `source` with these options, and with features measured. Cost: each region
+/// is meshed once more. Errors: those of `source` and of `tracked_surface`; invalid_argument for regions
+/// between two isovalues, which two surfaces bound.
+Status use_boundary_pieces(TrackingGraph& graph, StepSource& source, const TrackOptions& options = {});
 
 /// Writes one self-contained HTML file: the viewer and the mesh, no reference to anything outside. It opens
 /// in any browser with WebGL 2 (all current ones), also from a disk without a network.

@@ -5,6 +5,7 @@
 #include "core/text.hpp"
 #include "hyperiso/slice.hpp"
 #include "hyperiso/track.hpp"
+#include "hyperiso/view.hpp"
 #include "view/track_labels.hpp"
 
 #include <algorithm>
@@ -225,8 +226,9 @@ std::unique_ptr<Frames> frames_with_tracks(const FieldOptions& input, const Trac
   for (const NamedSteps& other : data.open(input, machine))
     others.push_back({other.name, take(other.steps->read(0, other.steps->info().axes.back().count))});
   FieldSteps in_memory(field);
-  const TrackingGraph graph = tracking.track(in_memory, track_options, printing.quiet);
+  TrackingGraph graph = tracking.track(in_memory, track_options, printing.quiet);
   if (folder) folder->check_tracks(graph);
+  take(use_boundary_pieces(graph, in_memory, track_options));
 
   const ExtractOptions extraction = surface.extract_options(machine); // with the memory that is left now
   return with_view<lowest_animated>(field, [&]<class T, int D>(const FieldView<T, D>& view) {

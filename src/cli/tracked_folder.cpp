@@ -135,10 +135,10 @@ void check_kind(const TrackedFolder& folder) {
     fail_usage(text(folder.path,
                     ": it holds only the tracks of --seed or --select; run 'hyperiso track' without "
                     "these to see all"));
-  if (folder.tracking.of_regions())
-    fail_usage(text(folder.path,
-                    ": it holds tracks of regions, and only those of surfaces are shown; run "
-                    "'hyperiso track' with --iso and --track surface, or open ",
+  if (!folder.tracking.range.empty())
+    fail_usage(text(folder.path, ": it holds tracks of what lies between the isovalues ",
+                    folder.tracking.range,
+                    ", which two surfaces bound, and one is shown; run 'hyperiso track' with --iso, or open ",
                     (fs::path(folder.path) / "tracks.pvd").string(), " in ParaView"));
 }
 

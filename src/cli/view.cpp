@@ -173,6 +173,7 @@ void track_components(const View& options, StepSource& steps, Content& content) 
   const TrackOptions tracking = options.tracking.track_options(options.surface, options.machine);
   content.tracking = options.tracking.track(steps, tracking, options.printing.quiet);
   if (options.folder) options.folder->check_tracks(content.tracking);
+  take(use_boundary_pieces(content.tracking, steps, tracking));
   content.page.tracking = &content.tracking;
 }
 void track_components(const View& options, Content& content) {

@@ -127,6 +127,7 @@ void move_tracking(const Affine& world, Json& tracking) {
 // The summary that files hold too, and of each track its volume at the steps.
 Json tracking_json(const TrackingGraph& graph, const std::optional<Affine>& world) {
   Json json = Json::parse(tracking_summary_json(graph));
+  json["regions"] = graph.tracked == Tracked::region;
   for (Json& track : json["tracks"]) track["volumes"] = Json::array();
   for (const Feature& feature : graph.features)
     if (feature.track >= 0)

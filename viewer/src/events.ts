@@ -29,9 +29,16 @@ function named(tracks: readonly number[]): string {
 /// handles as they are.
 function changeOfTopology(app: App, { type, delta_euler: change = 0 }: TrackEvent): string {
   const more = change < 0 ? "more" : "less", count = Math.abs(change);
+  if (app.metadata.tracking!.regions) return bodyText(app, change);
   if (type === "genus") return change ? `a handle or a hole ${more}` : "its genus changes";
   if (app.space.dimension < 4 || !change) return "a wall begins or ends to cut it";
   return `walls cut it in ${count === 1 ? "one curve" : `${count} curves`} ${more}`;
+}
+
+/// Of a body in space the Euler characteristic is 1 - tunnels + cavities, of one in a plane 1 - holes.
+function bodyText(app: App, change: number): string {
+  if (app.space.dimension < 4) return `a hole ${change < 0 ? "more" : "less"}`;
+  return change < 0 ? "a tunnel more or a cavity less" : "a tunnel less or a cavity more";
 }
 
 /// What happens, to those tracks that are shown: "tracks 0, 3 → track 0".

@@ -39,6 +39,7 @@ export interface TrackEvent {
 }
 
 export interface Tracking {
+  regions: boolean; // tracked is what the surface bounds
   tracks: Track[];
   events: TrackEvent[];
 }

@@ -270,13 +270,14 @@ function buildAbout(app: App): void {
   lines.push(`${count(mesh.simplexCount)} ${kind}, ${count(mesh.vertexCount)} vertices.`);
   for (const [k, axis] of space.axes.entries()) {
     const step = (axis.maximum - axis.minimum) / 1000;
-    lines.push(`${axis.name}: ${readable(axis.minimum, step)} to ${readable(axis.maximum, step)} ${axis.unit}` +
-      `${axis.samples ? `, ${count(axis.samples)} samples` : ""}${k === space.timeAxis ? " (time)" : ""}.`);
+    const range = `${axis.name}: ${readable(axis.minimum, step)} to ${readable(axis.maximum, step)}`;
+    lines.push(`${[range, axis.unit].filter(Boolean).join(" ")}${axis.samples ? `, ${count(axis.samples)} samples` : ""}${k === space.timeAxis ? " (time)" : ""}.`);
   }
   if (metadata.levels)
     lines.push("A cut across isovalue is the isosurface at that value; between two levels it runs linearly from one surface to the other.");
   else if (mesh.corners === 4)
     lines.push("Between two steps the field is interpolated linearly, so every moment is a true cut of one surface in space and time.");
+  if (metadata.tracking?.regions) lines.push("The tracks are those of the regions that the surface bounds.");
   const paragraph = (text: string, className = ""): void => {
     const p = document.createElement("p");
     p.textContent = text;

@@ -72,9 +72,11 @@ function headOf(app: App, tracks: readonly Track[]): HTMLElement {
   const head = document.createElement("div");
   head.className = "tracking-head";
   const name = document.createElement("strong");
-  name.title = "Point at a track to see it in the picture; click an event to go there";
+  const left = app.metadata.tracking!.tracks.length - tracks.length;
+  name.title = "Point at a track to see it in the picture; click an event to go there" +
+    (left ? `. ${counted(left, "track")} marked as small or short and what happens to them alone are left out here` : "");
   const showCount = (): void => {
-    name.textContent = `${share(tracks.length, app.metadata.tracking!.tracks.length, "track")}, ` +
+    name.textContent = `${share(tracks.length, app.metadata.tracking!.tracks.length, "track")}${app.metadata.tracking!.regions ? " of regions" : ""}, ` +
       share(app.chosenEvents().length, app.allEvents.length, "event");
   };
   showCount();

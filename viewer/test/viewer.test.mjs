@@ -711,6 +711,21 @@ describe("the page of a tracking result", () => {
   test("had no errors", () => assert.deepEqual(problems, []));
 });
 
+test("tracks of regions are told as such, and their events by what bodies are", async () => {
+  const text = readFileSync(join(folder, "tracks.html"), "latin1");
+  writeFileSync(join(folder, "regions.html"), text.replace('"regions":false', '"regions":true'), "latin1");
+  const { page, problems, close } = await open("regions.html");
+  assert.equal(await page.textContent(".tracking-head strong"), "2 tracks of regions, 1 event");
+  assert.match(await page.textContent("#about-text"), /regions that the surface bounds/);
+  const texts = await page.evaluate(() => [-1, 1].map((delta_euler) => {
+    hyperiso.showEvent({ ...hyperiso.events[0], type: "genus", in: [0], out: [0], delta_euler });
+    return hyperiso.view.marker.text.split("\n")[1];
+  }));
+  assert.deepEqual(texts, ["track 0: a tunnel more or a cavity less", "track 0: a tunnel less or a cavity more"]);
+  assert.deepEqual(problems, []);
+  await close();
+});
+
 describe("the events of a page", () => {
   // The page of two blobs with more events than they have.
   const TIMES = { touch: [0.1, 0.2, 0.3, 0.7], genus: [0.25], merge: [0.594922], birth: [0.45], death: [0.46] };
