@@ -49,18 +49,26 @@ Page sample_page(const std::string& name, std::vector<std::int64_t> dims, bool t
   return page;
 }
 
-// Two blobs and their tracks, with the height as an attribute.
+// Two blobs and their tracks.
 struct TrackedPage {
   Page page;
   TrackingGraph graph;
 };
 
-TrackedPage tracked_page() {
-  TrackedPage tracked{sample_page<4>("gaussians", {24, 24, 24, 21}, true), {}};
+template <int D>
+TrackedPage tracked_page(std::vector<std::int64_t> dims) {
+  TrackedPage tracked{sample_page<D>("gaussians", dims, true), {}};
   SampleOptions sample;
-  sample.dims = {24, 24, 24, 21};
+  sample.dims = std::move(dims);
+  sample.time = true;
   FieldSteps steps(take(make_sample("gaussians", sample)));
   tracked.graph = take(track(steps, *tracked.page.options.isovalue));
+  return tracked;
+}
+
+// With the height as an attribute.
+TrackedPage tracked_page_with_height() {
+  TrackedPage tracked = tracked_page<4>({24, 24, 24, 21});
   const Mesh& mesh = *tracked.page.mesh;
   std::vector<float> height;
   for (std::size_t i = 0; i < mesh.vertex_count(); ++i)
@@ -165,10 +173,12 @@ int main(int count, char** arguments) {
   Page blobs = sample_page<4>("gaussians", {24, 24, 24, 21}, true);
   blobs.options.notes = {"Every second sample was left out."};
   write(blobs, folder / "blobs.html");
-  TrackedPage tracked = tracked_page();
+  TrackedPage tracked = tracked_page_with_height();
   tracked.page.options.tracking = &tracked.graph;
   write(tracked.page, folder / "tracks.html");
-  write(sample_page<3>("gaussians", {40, 40, 21}, true), folder / "spacetime.html");
+  TrackedPage flat = tracked_page<3>({40, 40, 21});
+  flat.page.options.tracking = &flat.graph;
+  write(flat.page, folder / "spacetime.html");
   write(sample_page<3>("gyroid", {24, 24, 24}, false), folder / "still.html");
   write({std::make_unique<SimplexMesh<4>>(), {}}, folder / "empty.html");
   write(levels_page(), folder / "levels.html");

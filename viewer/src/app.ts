@@ -239,12 +239,13 @@ export class App {
   }
   showEvent(event: TrackEvent): void {
     this.moveToTime(event.time);
-    this.view.marker = { point: this.picturePoint(event.position), text: eventLines(this, event).join("\n") };
+    this.view.marker = { point: this.picturePoint(event), text: eventLines(this, event).join("\n") };
     this.view.request();
   }
-  /// Where a place in space is in the picture.
-  private picturePoint(position: readonly number[]) {
-    const scene = [0, 1, 2, 3].map((k) => (k < position.length && k < this.space.dimension ? this.space.scene(k, position[k]!) : 0));
+  /// Where an event is in the picture, which in R^3 has time as one of its directions.
+  private picturePoint({ position, time }: TrackEvent) {
+    const { timeAxis } = this.space;
+    const scene = this.space.axes.map((_, k) => this.space.scene(k, k === timeAxis ? time : position[k]!));
     const at = this.view.controls.target.clone();
     [0, 1, 2].forEach((row) => at.setComponent(row, dot(this.state.frame[row]!, scene)));
     return at;

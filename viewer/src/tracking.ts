@@ -6,7 +6,20 @@ import type { Track, TrackEvent } from "./metadata";
 
 const SVG = "http://www.w3.org/2000/svg";
 const LANE = 20, TOP = 8;
-const MOST_NAMED = 16, NAME = 14; // events that are named beside their glyph; where the name begins, and room behind it
+const MOST_NAMED = 16; // events that are named beside their glyph
+const GLYPH = 7, NAME = 11, LETTER = 6.5; // how far a glyph reaches, where its name begins; the width of a letter
+
+/// A part of a lane that something takes up.
+interface Extent {
+  lane: number;
+  low: number;
+  high: number;
+}
+const meet = (a: Extent, b: Extent): boolean => a.lane === b.lane && a.low < b.high && b.low < a.high;
+/// The first place from `begin` on where `width` is free.
+function freePlace(begin: number, width: number, taken: readonly Extent[]): number {
+  return [...taken].sort((a, b) => a.low - b.low).reduce((place, { low, high }) => (low < place + width && place < high ? high + 2 : place), begin);
+}
 
 function svg<K extends keyof SVGElementTagNameMap>(name: K, attributes: Record<string, string | number>): SVGElementTagNameMap[K] {
   const result = document.createElementNS(SVG, name);
@@ -147,10 +160,10 @@ export function buildTracking(app: App): void {
     drawing.replaceChildren();
     drawing.setAttribute("viewBox", `0 0 ${width} ${height}`);
     for (const event of app.allEvents) drawLinks(event);
-    for (const track of tracks) drawing.append(lane(track));
     const shown = app.chosenEvents().filter((event) => [...event.in, ...event.out].some((id) => lanes.has(id)));
-    const byWeight = [...shown].sort((a, b) => Number(isMinor(b.type)) - Number(isMinor(a.type)));
     const named = namedOf(shown);
+    for (const track of tracks) drawing.append(lane(track, shown.map((event) => extentOf(event, named.has(event)))));
+    const byWeight = [...shown].sort((a, b) => Number(isMinor(b.type)) - Number(isMinor(a.type)));
     for (const event of byWeight) drawing.append(glyph(event, named.has(event)));
     drawing.append(now);
     moveNow();
@@ -171,7 +184,7 @@ export function buildTracking(app: App): void {
       }
   };
 
-  const lane = (track: Track): SVGElement => {
+  const lane = (track: Track, extents: readonly Extent[]): SVGElement => {
     const group = svg("g", { class: "lane", tabindex: 0, role: "button", "data-track": track.id,
       "aria-label": `Track ${track.id}, ${app.positionText(app.space.timeAxis, track.start_time)} to ${app.positionText(app.space.timeAxis, track.end_time)}` });
     const begin = x(track.start_time), end = Math.max(x(track.end_time), begin + 2);
@@ -179,9 +192,11 @@ export function buildTracking(app: App): void {
     const title = svg("title", {});
     title.textContent = group.getAttribute("aria-label");
     group.append(title);
-    if (end - begin > 90) {
-      const name = svg("text", { x: begin + 8, y: y(track.id) + 4 });
-      name.textContent = `track ${track.id}`;
+    const text = `track ${track.id}`;
+    const place = freePlace(begin + 8, LETTER * text.length, extents.filter((one) => one.lane === y(track.id)));
+    if (place + LETTER * text.length < end - 8) {
+      const name = svg("text", { x: place, y: y(track.id) + 4 });
+      name.textContent = text;
       group.append(name);
     }
     const light = (on: boolean) => app.set({ highlight: on ? track.id & 0xffff : -1 });
@@ -207,14 +222,20 @@ export function buildTracking(app: App): void {
   };
   /// The track beside which an event that has one in a lane stands.
   const trackOf = (event: TrackEvent): number => [...event.out, ...event.in].find((id) => lanes.has(id))!;
-  /// The events, few enough, beside whose glyph their name has room before the next glyph.
+  /// What a glyph takes up of its lane, with its name or without.
+  const extentOf = (event: TrackEvent, named: boolean): Extent => {
+    const at = x(event.time), name = named ? NAME + LETTER * event.type.length : 0;
+    return { lane: y(trackOf(event)), low: at - Math.max(GLYPH, sideOf(event) < 0 ? name : 0), high: at + Math.max(GLYPH, sideOf(event) > 0 ? name : 0) };
+  };
+  /// The events, few enough, whose name has room beside their glyph.
   const namedOf = (shown: readonly TrackEvent[]): Set<TrackEvent> => {
-    if (shown.length > MOST_NAMED) return new Set();
-    const places = shown.map((event) => ({ event, lane: y(trackOf(event)), at: x(event.time), side: sideOf(event) }));
-    return new Set(places.filter(({ event, lane, at, side }) => places.every((other) => {
-      const away = side * (other.at - at), letters = event.type.length + (other.side === side ? 0 : other.event.type.length);
-      return other.event === event || other.lane !== lane || away < 0 || away > NAME + 7 * letters;
-    })).map(({ event }) => event));
+    const named = new Set<TrackEvent>();
+    if (shown.length <= MOST_NAMED)
+      for (const event of shown) {
+        const others = shown.filter((other) => other !== event).map((other) => extentOf(other, named.has(other)));
+        if (!others.some((other) => meet(other, extentOf(event, true)))) named.add(event);
+      }
+    return named;
   };
   /// 1: the name stands to the right of the glyph; -1: to the left, at the end of the line.
   const sideOf = (event: TrackEvent): 1 | -1 => (x(event.time) < drawing.clientWidth - 80 ? 1 : -1);

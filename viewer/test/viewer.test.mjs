@@ -802,9 +802,10 @@ describe("the events of a page", () => {
     assert.equal(await page.locator(".link").count(), 1);
   });
 
-  test("are named beside their glyph where that hides no other", async () => {
+  test("are named beside their glyph, and tracks in their lanes, where that hides nothing", async () => {
     const overlaps = await page.evaluate(() => {
       const boxes = [...document.querySelectorAll(".glyph")].flatMap((glyph) => [...glyph.querySelectorAll("text, path, circle, rect")].map((one) => ({ glyph, box: one.getBoundingClientRect() })));
+      for (const text of document.querySelectorAll(".lane text")) boxes.push({ glyph: text.closest(".lane"), box: text.getBoundingClientRect() });
       const names = boxes.filter(({ glyph, box }) => glyph.querySelector("text")?.getBoundingClientRect().left === box.left);
       return [names.length, names.flatMap(({ glyph, box }) => boxes.filter((other) => other.glyph !== glyph && other.box.top < box.bottom && other.box.bottom > box.top &&
         other.box.left < box.right && other.box.right > box.left).map((other) => `${glyph.dataset.event} over ${other.glyph.dataset.event}`))];
@@ -826,6 +827,15 @@ describe("surfaces in three dimensions", () => {
     const half = await picture(page);
     await page.check("#hide-beyond");
     assert.ok((await picture(page)).covered < half.covered);
+    await page.click('[data-event="merge"]'); // which is marked on the surface, at its time
+    const [height, time, away] = await page.evaluate(() => {
+      const { space, view: { marker: { point } }, events: [{ time }] } = hyperiso, { positions: p, count } = hyperiso.slice();
+      let away = Infinity;
+      for (let at = 0; at < 9 * count; at += 3) away = Math.min(away, Math.hypot(p[at] - point.x, p[at + 1] - point.y, p[at + 2] - point.z));
+      return [point.z, space.scene(2, time), away];
+    });
+    near(height, time, 1e-6);
+    assert.ok(away < 0.1, String(away));
     await page.click('#presets button:text-is("oblique")');
     assert.equal(await page.evaluate(() => hyperiso.axis), -1);
     assert.deepEqual(problems, []);
