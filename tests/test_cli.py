@@ -153,7 +153,8 @@ class WrongUsage(Case):
                 ["extract", field, "--iso", "1", "--foo"], ["extract", field, "--iso", "1", "--foo", "2"],
                 ["extract", field, "--iso", "0.5", "--iso", "0.6"], ["extract", field, "--iso", "0.5,0.5"],
                 ["extract", field, "--iso", "0.5", "--method", "cubes"], ["extract", field, "--iso", "0.5", "--inside", "out"],
-                ["extract", field, "--iso", "0.5", "--method", "cubes"],
+                ["extract", field, "--iso", "0.5", "--cut", "staircase"], ["extract", field, "--iso", "0.5", "--cut", "midpoints"],
+                ["extract", field, "--iso=", "--json"], ["extract", field, "--iso", "0.5", "--seed=", "--json"],
                 ["extract", field, "--iso", "0.5", "--precision", "f16"],
                 ["extract", field, "--iso", "0.5", "--threads", "0"], ["extract", field, "--iso", "0.5", "--threads", "two"],
                 ["extract", field, "--iso", "0.5", "--memory", "much"], ["extract", field, "--iso", "0.5", "--memory", "-1"],
@@ -289,6 +290,41 @@ class Output(Case):
         self.assert_refused(2, "extract", self.sample(), "--iso", "nan", "-o", "out.vtu")
         self.assert_refused(2, "convert", "bad.nrrd", "-o", "out.npy")
 
+    # By its name, another way to it, a link, or one of several numbered files.
+    def test_input_is_not_replaced(self):
+        field = self.sample("ball", "6,6,6,3")
+        (self.folder / "link.nrrd").symlink_to("field.nrrd")
+        os.link("field.nrrd", "hard.nrrd")
+        for path in ("field.nrrd", "./field.nrrd", str(self.folder / "field.nrrd"), "link.nrrd", "hard.nrrd"):
+            self.assert_refused(2, "convert", field, "-o", path, words=["-o", path, "would replace", "field.nrrd"])
+        self.assert_refused(2, "convert", "link.nrrd", "-o", field, words=["would replace"])
+        self.assert_refused(2, "extract", WATER, "--iso", "0.5", "--with", "b=link.nrrd", "--format", "vtu", "-o", field,
+                            words=["would replace link.nrrd"])
+        self.ok("convert", field, "-o", "s.vti")
+        for path in ("s.pvd", "s.vti"):
+            self.assert_refused(2, "convert", "s.pvd", "-o", path, words=["would replace s.pvd"])
+            self.assert_refused(2, "convert", "s_0000.vti", "s_0001.vti", "-o", path, words=["would replace s_0000.vti"])
+        self.ok("convert", "s_0000.vti", "s_0001.vti", "-o", "t.pvd")
+        self.ok("extract", field, "--iso", "0.5", "-o", "m_007.vtu")
+        self.assert_refused(2, "slice", "m_007.vtu", "--time", "0.5", "-o", "m_%03d.vtu", words=["would replace m_007.vtu"])
+        self.ok("slice", "m_007.vtu", "--time", "0.5", "-o", "m_%02d.vtu")
+
+    # Told before the work is done.
+    def test_folder_that_is_not_there_is_named(self):
+        field = self.sample("ball", "6,6,6,3")
+        for verb, options in (("extract", ["-o", "no/a.ply"]), ("slice", ["--time", "0", "-o", "no/a_%d.ply"]),
+                              ("animate", ["-o", "no/a_%d.ply"]), ("animate", ["-o", "no/a.glb"])):
+            self.assert_refused(1, verb, field, "--iso", "0.5", *options, words=[options[-1], "there is no folder no;"])
+        (self.folder / "away.ply").symlink_to("no/a.ply")
+        self.assert_refused(1, "extract", field, "--iso", "0.5", "--steps", "0:1", "-o", "away.ply", words=["there is no folder no"])
+
+    def test_link_that_leads_nowhere_stays_and_its_file_is_made(self):
+        field = self.sample()
+        (self.folder / "link.ply").symlink_to("made.ply")
+        self.ok("extract", field, "--iso", "0.5", "-o", "link.ply")
+        self.assertEqual(os.readlink("link.ply"), "made.ply")
+        self.assertTrue((self.folder / "made.ply").is_file())
+
     # Standard output has the report; the shell's habit of "-" would make a file of that name.
     def test_no_file_is_called_minus(self):
         arguments = {"sample": ["ball", "--dims", "4,4"], "extract": [WATER, "--iso", "0.5"], "interval": [WATER, "--range", "0.4:0.6"]}
@@ -362,7 +398,7 @@ class Output(Case):
         self.assert_refused(1, *barycentric, "--memory", "20M", words=["simplices so far", "--memory"])
         made = self.ok(*barycentric, "--memory", "80M", "--json").json()
         self.assertLess(made["peak_memory_bytes"], 110 << 20)
-        self.assert_refused(1, *barycentric, "--memory", "80M", "--measure", words=["--measure", "left", "--memory"])
+        self.assert_refused(1, *barycentric, "--memory", "80M", "--measure", words=["--measure of", "more than", "--memory"])
         six = self.sample("noise", "4,4,3,3,3,3")
         self.assert_refused(1, "extract", six, "--iso", "0.5", "--method", "simplicial", "--memory", "4M", words=["so far"])
 

@@ -236,6 +236,12 @@ class Animate(Case):
         self.assertLess(sum(abs(a - b) for a, b in zip(film, pictures)) / len(film), 3)
 
     @unittest.skipUnless(HAS_FILMS, "no ffmpeg, or built without pictures")
+    def test_gif_of_any_size(self):
+        self.torus()
+        self.ok("animate", "torus.nrrd", "--iso", "0.5", "--frames", "2", "--size", "101x75", "-o", "film.gif")
+        self.assertEqual(struct.unpack("<HH", (self.folder / "film.gif").read_bytes()[6:10]), (101, 75))
+
+    @unittest.skipUnless(HAS_FILMS, "no ffmpeg, or built without pictures")
     def test_without_ffmpeg_it_says_so_before_the_work(self):
         self.torus()
         (self.folder / "film.mp4").write_text("keep me")
@@ -275,7 +281,8 @@ class Animate(Case):
                 (["torus.nrrd", "--iso", "0.5", "--frames", "3", "--quantise", *ply], ["--quantise", ".ply"]),
                 (["torus.nrrd", "--iso", "0.5", "--frames", "3", "--morph", *ply], ["--morph", ".ply"]),
                 (["torus.nrrd", "--iso", "0.5", "--frames", "3", "--fps", "0", "-o", "a.glb"], ["--fps", "0"]),
-                (["torus.nrrd", "--iso", "0.5", "--frames", "3", "--colour-by", "density", "-o", "a.glb"], ["density"]),
+                (["torus.nrrd", "--iso", "0.5", "--frames", "3", "--colour-by", "density", "-o", "a.glb"], ["density", "normal, x, y, z"]),
+                (["torus.nrrd", "--iso", "0.5", "--frames", "3", "--colour-by", "t", "-o", "a.glb"], ["t is the same all over a frame"]),
                 (["torus.nrrd", "--iso", "0.5", "--frames", "3", "--colour-by", "x", "-o", "a.pvd"], ["--colour-by"]),
                 (["torus.nrrd", "--iso", "0.5", "--frames", "3", "--colour-range", "0:1", "-o", "a.glb"], ["--colour-by"])]:
             self.assert_refused(2, "animate", *arguments, words=words)
@@ -288,7 +295,7 @@ class Animate(Case):
                 self.assert_refused(2, "animate", "torus.nrrd", "--iso", "0.5", "--frames", "3", *options, "-o", "f_%d.png",
                                     words=words)
             self.assert_refused(2, "animate", "torus.nrrd", "--iso", "0.5", "--frames", "3", "--size", "101x100", "-o",
-                                "f.mp4", words=["--size", "101"])
+                                "f.mp4", words=["--size", "101x100", "102x100"])
 
     def test_an_empty_surface_is_told_and_written(self):
         self.torus()

@@ -12,6 +12,18 @@ from cli_case import Case, Run, WATER
 
 
 class SliceOfAMesh(Case):
+    def test_time_of_three_axes_of_space_is_told(self):
+        field = self.sample()
+        self.ok("extract", field, "--iso", "0.5", "-o", "ball.vtu")
+        for source in ([field, "--iso", "0.5"], ["ball.vtu"]):
+            told = Run("slice", *source, "--time", "0.25", "--json")
+            self.assertRegex(told.err, r"\Ahyperiso: warning: --time cuts the last axis, z,.* --axis z=0.25 [^\n]*\n\Z")
+            plain = self.ok("slice", *source, "--axis", "z=0.25", "--json").json()
+            self.assertEqual(told.json()["hyperplane"], plain["hyperplane"])
+        self.sample("ball", "12,12,5", "disc.nrrd", "--time")
+        self.ok("slice", "disc.nrrd", "--iso", "0.5", "--time", "0.25")
+        self.ok("slice", field, "--iso", "0.5", "--time-axis", "z", "--time", "0.25")
+
     def test_times_are_not_negative_and_a_cut_beside_the_data_is_refused(self):
         self.sample("ball", "9,9,9,5", "moving.nrrd")
         self.ok("extract", "moving.nrrd", "--iso", "0.5", "-o", "moving.vtu")

@@ -59,6 +59,10 @@ class Seeds(Case):
         for bad in ["0,0,0", "0,0,0,0,0", "0,0,0,99", "a,0,0,0", "0,0,0,0:0,0,0,0:0,0,0,0", "", "-1,-1,-1,0",
                     "0,0,0,0.5:0,0,0,0.5"]:
             self.assert_refused(2, "extract", "blobs.nrrd", "--iso", "0.5", "--seed", bad)
+        # A cell that one of the surfaces passes: the message says which does not.
+        self.sample("ball", "9,9,9", "ball.nrrd")
+        self.ok("extract", "ball.nrrd", "--iso", "0.4", "--seed", "0,0,0.7")
+        self.assert_refused(2, "extract", "ball.nrrd", "--iso", "0.4,0.9", "--seed", "0,0,0.7", words=["--seed at isovalue 0.9"])
 
 
 class Interval(Case):
@@ -173,7 +177,7 @@ class SlabBySlab(Case):
 
     def test_measured_as_a_whole_if_that_fits(self):
         self.ok("convert", self.field, "-o", "packed.nrrd", "--compress")
-        measure = self.ok("extract", "packed.nrrd", "--iso", "0.7", "--json", "--measure", "--memory", "5M").json()
+        measure = self.ok("extract", "packed.nrrd", "--iso", "0.7", "--json", "--measure", "--memory", "8M").json()
         self.assertEqual(measure["measure"],
                          self.ok("extract", self.field, "--iso", "0.7", "--json", "--measure").json()["measure"])
         self.assert_refused(1, "extract", "packed.nrrd", "--iso", "0.1", "--method", "simplicial", "--measure",
@@ -221,7 +225,7 @@ class Selection(Case):
         field = self.sample("gyroid", "12,12,12")
         self.ok("extract", field, "--iso", "-0.5")
         self.ok("extract", field, "--iso=-0.5,-.25,1e-1")
-        self.ok("slice", field, "--iso", "-0.5", "--time", "-0.25")
+        self.ok("slice", field, "--iso", "-0.5", "--time", "-0.25", "--quiet")
         self.ok("slice", field, "--iso", "0.1", "--axis", "x=-0.25")
 
     def test_time_axis_becomes_the_last(self):

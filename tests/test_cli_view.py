@@ -83,8 +83,10 @@ class View(Case):
         self.assertRegex(run.err, r"\Ahyperiso: warning: the page would have been larger than 8.*second sample.*\n\Z")
         self.assertEqual(len(self.metadata("a.html")["notes"]), 1)
         self.assertEqual(self.metadata("a.html")["samples"]["axes"][0]["count"], 12)
-        self.assert_refused(2, "view", WATER, "--iso", "0.5", "--payload", "field", "--max-size", "100k", "-o", "b.html",
+        self.assert_refused(2, "view", WATER, "--iso", "0.5", "--payload", "field", "--max-size", "700k", "-o", "b.html",
                             words=["would be larger than", "higher limit"])
+        self.assert_refused(2, "view", WATER, "--iso", "0.5", "--payload", "field", "--max-size", "100k", "-o", "b.html",
+                            words=["viewer alone", "100 KiB"])
         self.assertFalse((self.folder / "b.html").exists())
 
     def test_space_alone_and_two_axes_of_space_with_time(self):

@@ -275,6 +275,22 @@ TEST(Interval, missing_data_and_levels_beyond_the_type) {
   EXPECT_EQ(filled(bytes, {500, 1000}).simplex_count(), 0u);
 }
 
+// Where the field is flat at a level it belongs to one of the volumes on its two sides.
+TEST(Interval, flat_at_a_level) {
+  const auto flat = check::make_field<float, 2>(check::box_grid<2>(3, 0, 2), [](const auto&) { return 1.0; });
+  for (const Inside inside : {Inside::above, Inside::below}) {
+    IntervalOptions options;
+    options.inside = inside;
+    const auto ends_there = interval(flat.view, 0, 1, options),
+               begins_there = interval(flat.view, 1, 2, options);
+    ASSERT_TRUE(ends_there && begins_there);
+    const auto &full = inside == Inside::above ? *begins_there : *ends_there,
+               &empty = inside == Inside::above ? *ends_there : *begins_there;
+    EXPECT_EQ(empty.simplex_count(), 0u);
+    EXPECT_DOUBLE_EQ(measure_contents(full)->content, 4);
+  }
+}
+
 TEST(Interval, levels_that_make_no_range) {
   const auto field = random_field<float, 2>({3, 3}, 9, 2);
   for (const std::vector<double>& bad :

@@ -89,7 +89,11 @@ TEST(AtomicFile, existing_target_stays_when_the_disk_is_full) {
 
 TEST(AtomicFile, targets_that_cannot_be_written) {
   const TemporaryFolder folder;
-  expect_unwritable(write_file(folder / "missing" / "a", "x"), folder / "missing" / "a", ENOENT);
+  const Status nowhere = write_file(folder / "missing" / "a", "x");
+  ASSERT_FALSE(nowhere);
+  EXPECT_EQ(nowhere.error().code, Code::file_unwritable);
+  EXPECT_NE(nowhere.error().message.find("there is no folder " + (folder / "missing").string()),
+            std::string::npos);
   expect_unwritable(write_file(folder / "", "x"), folder / "", EISDIR);
   fs::create_directory(folder / "d");
   expect_unwritable(write_file(folder / "d", "x"), folder / "d", EISDIR);
@@ -110,6 +114,22 @@ TEST(AtomicFile, keeps_permissions_and_symbolic_links) {
   EXPECT_TRUE(fs::is_symlink(folder / "link"));
   EXPECT_EQ(content_of(folder / "a"), "new");
   EXPECT_EQ(fs::status(folder / "a").permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+// The end of a chain of links is made, where it is to be; a chain without an end is an error.
+TEST(AtomicFile, links_that_lead_nowhere) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "d");
+  fs::create_symlink("d/second", folder / "first");
+  fs::create_symlink("made", folder / "d" / "second");
+  ASSERT_TRUE(write_file(folder / "first", "new"));
+  EXPECT_TRUE(fs::is_symlink(folder / "first"));
+  EXPECT_TRUE(fs::is_symlink(folder / "d" / "second"));
+  EXPECT_EQ(content_of(folder / "d" / "made"), "new");
+  fs::create_symlink("b", folder / "a");
+  fs::create_symlink("a", folder / "b");
+  expect_unwritable(write_file(folder / "a", "x"), folder / "a", ELOOP);
+  EXPECT_TRUE(fs::is_symlink(folder / "a"));
 }
 
 // A pipe cannot seek: what follows a gap has to wait for it, in order.

@@ -17,7 +17,9 @@ struct IntervalOptions : ExtractOptions {
   LevelAxis level_axis = LevelAxis::last;
 };
 
-/// Fills the volume levels.front() <= field <= levels.back() with D-simplices in R^D.
+/// Fills the volume between the levels with D-simplices in R^D: samples with levels.front() <= value <
+/// levels.back() are in it; with Inside::below, levels.front() < value <= levels.back(). That matters where
+/// the field is flat at a level.
 ///
 /// The field is lifted by one axis, along which the levels are taken off it; the isosurface at 0 of the
 /// lifted field, projected along that axis, is the volume. Nothing of the lifted field is stored. Within each

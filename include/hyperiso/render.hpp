@@ -24,7 +24,7 @@ struct Image {
 /// What the pictures of a series have in common. The camera looks at the middle of the box and is as near as
 /// it can be with all of the box in the picture; the last axis points up.
 struct RenderOptions {
-  int width = 960, height = 720;       ///< each 64 to 8192; even for films
+  int width = 960, height = 720;       ///< each 64 to 8192; even for .mp4
   double azimuth = -60;                ///< of the camera, in degrees from axis 0 towards axis 1
   double elevation = 25;               ///< in degrees above the plane of these; -90 to 90
   std::vector<double> low, high;       ///< the box: of all frames of a series, two or three numbers each
@@ -61,7 +61,7 @@ Status write_png(const Image& image, const std::filesystem::path& path, FileGrou
 class FilmWriter {
  public:
   /// Errors: file_unwritable, also where ffmpeg is missing; file_unsupported for other suffixes;
-  /// invalid_argument for odd sizes.
+  /// invalid_argument for odd sizes of .mp4.
   static Result<FilmWriter> create(const std::filesystem::path& path, int width, int height,
                                    double frames_per_second);
   FilmWriter(FilmWriter&&) noexcept;

@@ -247,7 +247,7 @@ Command animate_command(CLI::App& program) {
       ->group("Surface");
   app->add_option("--iso", options->tracking.iso, "fields: the isovalue")->type_name("V")->group("Surface");
   options->surface.add_to(*app);
-  options->data.add_to(*app, "films, pictures, .glb, .ply, by an axis too", "of all frames");
+  options->data.add_to(*app, "films, pictures, .glb, .ply, by an axis of space too", "of all frames");
   options->movie.add_to(*app, options->data);
   options->printing.add_to(*app);
   options->machine.add_to(*app);

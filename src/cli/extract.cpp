@@ -69,7 +69,8 @@ Status surface_into(const FieldView<const T, D>& view, double isovalue, const Ex
   if (options.seeds.empty()) return extract_into(view, isovalue, extraction, surface);
   if constexpr (D <= highest_dimension) {
     auto traced = extract_from_seeds(view, isovalue, parse_seeds<D>(options.seeds, axes), extraction);
-    if (!traced) return traced.error();
+    if (!traced)
+      return Error{traced.error().code, text("--seed at isovalue ", isovalue, ": ", traced.error().message)};
     visited = {traced->samples, traced->cells};
     surface = std::move(traced->mesh);
     return {};
@@ -122,7 +123,7 @@ Surface make_surface(const Extract& options, const LoadedField& loaded, const st
       });
   options.data.colour(mesh);
   if (mesh.simplex_count() == 0 && !options.printing.quiet) print_warning(why_empty(field, isovalue));
-  Surface surface{isovalue, finish(mesh, options, field.info, path, files), visited};
+  Surface surface{isovalue, finish(mesh, options, field.info, path, files, extraction.memory_limit), visited};
   surface.outcome.extract_seconds = extract_seconds + add_seconds;
   surface.outcome.read_seconds = loaded.read_seconds;
   return surface;
@@ -187,7 +188,7 @@ Outcome measure_slabs(const Extract& options, StepSource& steps, double isovalue
     throw Failure{{Code::out_of_memory, mesh.error().message + ", and is to be measured as a whole"}};
   Mesh surface = take(std::move(mesh));
   if (steps.info().world) transform(surface, *steps.info().world);
-  return finish(surface, options, steps.info(), path, files);
+  return finish(surface, options, steps.info(), path, files, extraction.memory_limit);
 }
 
 Surface stream_surface(const Extract& options, const OpenedField& opened, double isovalue,

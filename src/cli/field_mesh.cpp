@@ -35,7 +35,7 @@ std::vector<NamedField> load_others(const FieldMeshOptions& options) {
 }
 
 Outcome finish(const Mesh& mesh, const FieldMeshOptions& options, const FieldInfo& info,
-               const std::string& path, FileGroup& files) {
+               const std::string& path, FileGroup& files, std::uint64_t memory_limit) {
   const bool quiet = options.printing.quiet;
   Outcome outcome;
   outcome.simplex_dimension = mesh.simplex_dimension;
@@ -44,7 +44,7 @@ Outcome finish(const Mesh& mesh, const FieldMeshOptions& options, const FieldInf
   outcome.active_cells = mesh.active_cells;
   outcome.path = path;
   if (options.measure) {
-    check_memory_to_measure(mesh, options.machine);
+    check_memory_to_measure(mesh, memory_limit);
     outcome.measure = measure_of(mesh, quiet);
   }
   if (options.self_intersections) outcome.self_intersections = self_intersections_of(mesh, quiet);

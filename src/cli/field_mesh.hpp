@@ -65,9 +65,10 @@ Mesh make_mesh(const char* label, const Field& field, bool quiet, const Make& ma
   return mesh;
 }
 
-// Measures a mesh and writes it to `path`, if there is one, as the options ask.
+// Measures a mesh and writes it to `path`, if there is one, as the options ask. `memory_limit` is that of the
+// mesh and of what is measured together.
 Outcome finish(const Mesh& mesh, const FieldMeshOptions& options, const FieldInfo& info,
-               const std::string& path, FileGroup& files);
+               const std::string& path, FileGroup& files, std::uint64_t memory_limit);
 
 // The members of the JSON object, after `about` (dimension, dims and what the verb has to say), and the lines
 // of the report.

@@ -58,7 +58,7 @@ int run(const Interval& options) {
   if (mesh.simplex_count() == 0 && !options.printing.quiet) print_warning(why_empty(field, levels.front()));
 
   FileGroup files;
-  Outcome outcome = finish(mesh, options, field.info, options.output.path, files);
+  Outcome outcome = finish(mesh, options, field.info, options.output.path, files, filling.memory_limit);
   outcome.read_seconds = read_seconds;
   outcome.extract_seconds = extract_seconds;
   outcome.contents = contents_of(mesh, outcome, options.printing.quiet);
@@ -98,7 +98,8 @@ Command interval_command(CLI::App& program) {
   set_manual(
       *app,
       {{"interval INPUT... --range A:B [options]"},
-       {"Fills the volume where the field lies between A and B: with tetrahedra in a 3D field, with "
+       {"Fills the volume where the field lies between A and B (samples that equal A belong to it, those "
+        "that equal B do not; with --inside below the other way round): with tetrahedra in a 3D field, with "
         "triangles in 2D; in a 4D field, through time, with 4-simplices, which 'hyperiso slice' cuts at any "
         "time into the tetrahedra of that moment. With more levels the volumes between them are one mesh, "
         "joined at the isosurface of each level. "

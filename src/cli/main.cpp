@@ -4,6 +4,7 @@
 #include "cli/console.hpp"
 #include "cli/failure.hpp"
 #include "cli/manual.hpp"
+#include "cli/output_path.hpp"
 #include "cli/signals.hpp"
 #include "core/text.hpp"
 
@@ -67,12 +68,11 @@ void check_verb(const CLI::App& program, const std::vector<std::string>& argumen
   fail_usage(text("there is no verb '", word, "'; there are ", verbs));
 }
 
-// Standard output has the report; a file called "-" is nobody's wish.
-void check_output(const CLI::App& verb) {
-  const CLI::Option* output = verb.get_option_no_throw("--output");
-  if (output && output->count() > 0 && output->as<std::string>() == "-")
-    fail_usage(
-        "-o: results are not written to standard output, which has the report; name a file instead of -");
+// CLI11 takes the argument that follows for the missing value.
+void check_values(const std::vector<std::string>& arguments) {
+  for (const std::string& argument : arguments)
+    if (argument.size() > 3 && argument.starts_with("--") && argument.find('=') == argument.size() - 1)
+      fail_usage(text(argument, " has no value; write it after the =, or leave the option out"));
 }
 
 // What the verb has to offer where memory does not suffice.
@@ -102,6 +102,7 @@ int run(std::vector<std::string> arguments) {
   commands.push_back(view_command(program));
 #endif
   check_verb(program, arguments);
+  check_values(arguments);
   try {
     std::ranges::reverse(arguments); // as CLI11 takes them
     program.parse(std::move(arguments));

@@ -24,7 +24,8 @@ const Attribute* vertex_attribute(const Mesh& mesh, const std::string& name) {
   return nullptr;
 }
 
-// Makes the coordinate along the axis called `name` an attribute, unless there is one of that name.
+// Makes the coordinate along the axis of space called `name` an attribute, unless there is one of that name;
+// fails if there is neither.
 void add_coordinate(Mesh& frame, const std::string& name, const std::vector<Axis>& axes) {
   if (vertex_attribute(frame, name)) return;
   const auto D = static_cast<std::size_t>(frame.dimension);
@@ -34,7 +35,14 @@ void add_coordinate(Mesh& frame, const std::string& name, const std::vector<Axis
     for (std::size_t vertex = 0; vertex < frame.vertex_count(); ++vertex)
       values.push_back(frame.positions[vertex * D + axis]);
     frame.attributes.push_back({name, Attribute::Location::vertex, 1, std::move(values)});
+    return;
   }
+  if (name_of_axis(axes, D) == name) fail_usage(text("--colour-by: ", name, " is the same all over a frame"));
+  std::string names;
+  for (const Attribute& attribute : frame.attributes)
+    if (attribute.location == Attribute::Location::vertex) names += attribute.name + ", ";
+  for (std::size_t axis = 0; axis < D; ++axis) names += (axis == 0 ? "" : ", ") + name_of_axis(axes, axis);
+  fail_usage(text("--colour-by: the vertices have no data '", name, "'; there are ", names));
 }
 
 std::string with_unit(const std::string& name, const std::string& unit) {
@@ -184,7 +192,7 @@ void MovieOptions::add_to(CLI::App& app, const PointDataOptions& data) {
       ->type_name("N")
       ->default_str("10")
       ->group(group);
-  app.add_option("--size", size, "films and pictures: pixels; both even in films")
+  app.add_option("--size", size, "films and pictures: pixels; both even in .mp4")
       ->type_name("WxH")
       ->default_str("960x720")
       ->group(group);
@@ -237,11 +245,11 @@ std::pair<int, int> MovieOptions::pixels() const {
   const auto parts = split(size, 'x');
   if (parts.size() != 2) fail_usage(text("--size: '", size, "' is not WIDTHxHEIGHT, such as 960x720"));
   const std::int64_t width = parse_integer("--size", parts[0]), height = parse_integer("--size", parts[1]);
-  for (const std::int64_t number : {width, height}) {
+  for (const std::int64_t number : {width, height})
     if (number < 64 || number > 8192) fail_usage(text("--size: ", number, " pixels are not from 64 to 8192"));
-    if (kind() == Kind::film && number % 2 != 0)
-      fail_usage(text("--size: ", number, " is odd; films need even numbers of pixels"));
-  }
+  if (suffix_of(path) == ".mp4" && (width % 2 != 0 || height % 2 != 0))
+    fail_usage(text("--size: ", size, " has an odd number, and .mp4 takes even ones: ", width + width % 2,
+                    "x", height + height % 2));
   return {static_cast<int>(width), static_cast<int>(height)};
 }
 

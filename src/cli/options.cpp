@@ -189,9 +189,11 @@ ExtractOptions SurfaceOptions::extract_options(const MachineOptions& machine) co
   else
     fail_usage(text("--method: '", method,
                     "' is not a method; there are hull, component, simplicial and barycentric"));
-  if (cut != "midpoints" && cut != "staircase")
+  if (!cut.empty() && cut != "midpoints" && cut != "staircase")
     fail_usage(text("--cut: '", cut, "' is neither midpoints nor staircase"));
-  options.cut = cut == "midpoints" ? Cut::midpoints : Cut::staircase;
+  if (!cut.empty() && options.method != Method::barycentric)
+    fail_usage(text("--cut: only for --method barycentric, not for ", method));
+  options.cut = cut == "staircase" ? Cut::staircase : Cut::midpoints;
   if (inside != "above" && inside != "below")
     fail_usage(text("--inside: '", inside, "' is neither above nor below"));
   options.inside = inside == "above" ? Inside::above : Inside::below;

@@ -62,9 +62,9 @@ Field read_selection(FieldReader& reader, const Selection& selection, bool quiet
 // --iso
 std::vector<double> parse_isovalues(const std::string& iso);
 
-// --method, --inside, --precision
+// --method, --cut, --inside, --precision
 struct SurfaceOptions {
-  std::string method = "hull", cut = "midpoints", inside = "above", precision = "f32";
+  std::string method = "hull", cut, inside = "above", precision = "f32";
 
   void add_to(CLI::App& app);
   // For a surface that is made now, with the memory that is left now.

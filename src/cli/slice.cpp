@@ -54,6 +54,7 @@ struct Plan {
   std::vector<double> levels;    // of a volume
   std::vector<Axis> axes;        // of the space of the output: of the field, of the mesh, or of the world
   int simplex_dimension = 0;     // of the cut
+  bool has_time = true;          // the last axis, as far as the input tells
 
   int dimension() const { return static_cast<int>(axes.size()) - 1; } // of the cut's space
 };
@@ -140,10 +141,7 @@ void make_cuts(const Slice& options, const Plan& plan, std::vector<Outcome>& out
     if (outcome.simplices == 0 && !options.printing.quiet)
       print_warning(
           "the plane meets no part of the surface; 'hyperiso info' tells the ranges of axes and values");
-    if (options.measure) {
-      check_memory_to_measure(mesh, options.machine);
-      outcome.measure = take(measure(mesh));
-    }
+    if (options.measure) outcome.measure = take(measure(mesh));
     if (outcome.path.empty()) continue;
     const Stopwatch writing;
     take(write_mesh(mesh, outcome.path, options.output.write_options({}, files)));
@@ -314,6 +312,7 @@ std::vector<Outcome> slice_field(const Slice& options, Plan& plan) {
   plan.axes = info.axes;
   plan.simplex_dimension = volume ? plan.dimension() : plan.dimension() - 1;
   plan.planes = planes_in(options, plan.axes);
+  plan.has_time = info.has_time;
   std::vector<Outcome> outcomes = outcomes_of(options, plan);
   with_dimension<lowest_sliced>(info.dimension(), "the field", [&](auto dimension) {
     constexpr int D = decltype(dimension)::value;
@@ -350,6 +349,7 @@ std::vector<Outcome> slice_mesh(const Slice& options, Plan& plan) {
     plan.axes.resize(D); // a volume has an axis of levels besides
     plan.simplex_dimension = K - 1;
     plan.planes = planes_in(options, plan.axes);
+    plan.has_time = plan.axes.back().name != "z";
     std::vector<Outcome> outcomes = outcomes_of(options, plan);
     check_planes(plan);
     std::optional<SliceIndex<D, K>> index;
@@ -363,11 +363,18 @@ std::vector<Outcome> slice_mesh(const Slice& options, Plan& plan) {
   });
 }
 
+void warn_of_time(const Slice& options, const Plan& plan) {
+  const std::string last = name_of_axis(plan.axes, plan.axes.size() - 1);
+  print_warning(text("--time cuts the last axis, ", last, ", which the input does not call time; --axis ",
+                     last, "=", options.where.times.front(), " means the same"));
+}
+
 int run(const Slice& options) {
   Plan plan;
   (void)options.where.slice_frame();
   const bool from_mesh = options.input.paths.size() == 1 && is_mesh_file(options.input.paths[0]);
   const std::vector<Outcome> outcomes = from_mesh ? slice_mesh(options, plan) : slice_field(options, plan);
+  if (!plan.has_time && !options.where.times.empty() && !options.printing.quiet) warn_of_time(options, plan);
   print_outcomes(outcomes, options, plan);
   return 0;
 }

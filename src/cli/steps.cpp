@@ -28,10 +28,6 @@ void append(Numbers& whole, const Numbers& piece) {
     for (std::size_t i = 0; i < piece.size(); ++i) whole.set(start + i, piece[i]);
 }
 
-std::uint64_t bytes_of(const Mesh& mesh) {
-  return mesh.positions.bytes() + mesh.simplices.bytes() + mesh.edges.size() * sizeof(GridEdge);
-}
-
 } // namespace
 
 StepsWithoutFlatAxes::StepsWithoutFlatAxes(StepSource& steps) : steps_(steps), info_(steps.info()) {

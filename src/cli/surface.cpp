@@ -48,12 +48,16 @@ Measure measure_of(const Mesh& mesh, bool quiet) {
   return take(measure(mesh));
 }
 
-void check_memory_to_measure(const Mesh& mesh, const MachineOptions& machine) {
-  const std::uint64_t needed = mesh.simplices.size() * 8 + mesh.vertex_count() * 16, // as measure.hpp says
-      left = machine.memory_left();
-  if (needed > left)
-    throw Failure{{Code::out_of_memory, text("--measure of ", mesh.simplex_count(), " simplices needs ",
-                                             byte_size(needed), ", and ", byte_size(left), " are left")}};
+void check_memory_to_measure(const Mesh& mesh, std::uint64_t limit) {
+  const std::uint64_t needed = mesh.simplices.size() * 8 + mesh.vertex_count() * 16; // as measure.hpp says
+  if (bytes_of(mesh) + needed <= limit) return;
+  throw Failure{{Code::out_of_memory, text("the surface takes ", byte_size(bytes_of(mesh)),
+                                           " and --measure of its ", mesh.simplex_count(), " simplices ",
+                                           byte_size(needed), ", more than ", byte_size(limit))}};
+}
+
+std::uint64_t bytes_of(const Mesh& mesh) {
+  return mesh.positions.bytes() + mesh.simplices.bytes() + mesh.edges.size() * sizeof(GridEdge);
 }
 
 bool is_mesh_file(const std::string& path) {
@@ -146,6 +150,7 @@ Affine at_coordinate(const Affine& map, int axis, double value) {
 }
 
 FieldInfo without_flat_axes(FieldInfo info) {
+  if (info.dimension() < 2) check_axes(info);
   for (int axis = info.dimension() - 1; axis >= 0; --axis) {
     const Axis& flat = info.axes[static_cast<std::size_t>(axis)];
     if (flat.count != 1) continue;

@@ -22,8 +22,9 @@ std::vector<Axis> axes_of(const Mesh& mesh);
 
 Mesh mesh_in(const std::string& path, bool quiet);
 Measure measure_of(const Mesh& mesh, bool quiet);
-// Fails if --measure takes more memory than is left.
-void check_memory_to_measure(const Mesh& mesh, const MachineOptions& machine);
+// Fails if the mesh and --measure of it take more memory than the limit.
+void check_memory_to_measure(const Mesh& mesh, std::uint64_t limit);
+std::uint64_t bytes_of(const Mesh& mesh);
 
 // Whether a file holds a mesh, by its suffix.
 bool is_mesh_file(const std::string& path);

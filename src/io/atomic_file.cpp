@@ -71,6 +71,17 @@ std::optional<int> descriptor_named(const std::string& path) {
   return std::nullopt;
 }
 
+// What a symbolic link leads to in the end, there or not; nothing if it leads in circles.
+std::optional<std::filesystem::path> followed(std::filesystem::path path) {
+  constexpr int most_links = 40; // as Linux
+  std::error_code failure;
+  for (int links = 0; std::filesystem::is_symlink(std::filesystem::symlink_status(path, failure)); ++links) {
+    if (links == most_links) return std::nullopt;
+    path = path.parent_path() / std::filesystem::read_symlink(path, failure);
+  }
+  return path;
+}
+
 int open_retrying(const char* path, int flags, mode_t mode = 0) {
   int descriptor;
   do descriptor = ::open(path, flags | O_CLOEXEC, mode);
@@ -143,9 +154,12 @@ void AtomicFile::open_in_place() {
 }
 
 void AtomicFile::open_temporary() {
-  std::error_code unresolved;
-  replaces_ = std::filesystem::canonical(target_, unresolved);
-  if (unresolved) replaces_ = target_; // not there yet
+  if (const auto end = followed(target_)) {
+    replaces_ = *end;
+  } else {
+    error_number_ = ELOOP;
+    return;
+  }
   if (!replaces_.has_filename()) {
     error_number_ = EISDIR;
     return;
@@ -250,8 +264,13 @@ Status AtomicFile::status() const {
 }
 
 Error AtomicFile::error() const {
+  std::error_code failure;
+  const std::filesystem::path folder = replaces_.parent_path();
+  const bool has_folder = folder.empty() || std::filesystem::exists(folder, failure);
   return Error{Code::file_unwritable,
-               text("cannot write ", target_.string(), ": ", std::strerror(error_number_))};
+               error_number_ == ENOENT && !has_folder
+                   ? text("cannot write ", target_.string(), ": there is no folder ", folder.string())
+                   : text("cannot write ", target_.string(), ": ", std::strerror(error_number_))};
 }
 
 FileGroup::FileGroup() = default;

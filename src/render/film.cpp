@@ -181,9 +181,11 @@ Result<FilmWriter> FilmWriter::create(const std::filesystem::path& path, int wid
   const auto encoding = encoding_for(lower_case(path.extension().string()));
   if (encoding.empty())
     return Error{Code::file_unsupported, text(path.string(), ": a film is an .mp4 or a .gif")};
-  if (width % 2 != 0 || height % 2 != 0)
-    return Error{Code::invalid_argument, text("a film of ", width, "x", height,
-                                              " pixels: both must be even (two pixels share a colour)")};
+  const bool halves_colours = encoding.back() == "mp4"; // two pixels share one
+  if (halves_colours && (width % 2 != 0 || height % 2 != 0))
+    return Error{Code::invalid_argument,
+                 text("an .mp4 of ", width, "x", height, " pixels: both must be even, as in ",
+                      width + width % 2, "x", height + height % 2)};
   if (!(frames_per_second > 0) || !(frames_per_second <= 1000))
     return Error{Code::invalid_argument, text(frames_per_second, " frames per second: it is from 0 to 1000")};
   try {

@@ -272,6 +272,9 @@ Status PageFile::finish() {
 }
 
 Error PageFile::too_large(std::string_view what) const {
+  if (shell_.size() > limit_)
+    return {Code::invalid_argument,
+            text("the viewer alone takes ", byte_size(shell_.size()), ", the limit is ", byte_size(limit_))};
   return {Code::invalid_argument, text("a page of ", what, " would be larger than ", byte_size(limit_),
                                        "; fewer samples, fewer steps or a higher limit would do")};
 }
