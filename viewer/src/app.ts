@@ -1,4 +1,5 @@
 // What holds the page together: the state, and what follows from a change of it.
+import type { Vector3 } from "three";
 import { rgb, type Rgb } from "./colours";
 import { eventLines } from "./events";
 import { axisFrame, axisOf, dot, type Frame, reachOf, turnedTo } from "./frame";
@@ -18,6 +19,8 @@ export interface Colouring {
   range: [number, number]; // of all data
   diverging?: boolean; // the range lies around 0
 }
+
+export const NO_TRACK = 0xffff; // of what begins and ends between two steps
 
 const RUN_SECONDS = 10; // a whole run at speed 1
 
@@ -239,11 +242,16 @@ export class App {
   }
   showEvent(event: TrackEvent): void {
     this.moveToTime(event.time);
-    this.view.marker = { point: this.picturePoint(event), text: eventLines(this, event).join("\n") };
+    this.mark(this.picturePoint(event), eventLines(this, event));
+  }
+  /// Says something beside a point of the picture, and to those who do not see that.
+  mark(point: Vector3, lines: readonly string[]): void {
+    this.view.marker = { point, text: lines.join("\n") };
+    element("said").textContent = lines.join(", ");
     this.view.request();
   }
   /// Where an event is in the picture, which in R^3 has time as one of its directions.
-  private picturePoint({ position, time }: TrackEvent) {
+  private picturePoint({ position, time }: TrackEvent): Vector3 {
     const { timeAxis } = this.space;
     const scene = this.space.axes.map((_, k) => this.space.scene(k, k === timeAxis ? time : position[k]!));
     const at = this.view.controls.target.clone();
@@ -411,7 +419,7 @@ export class App {
 
   private uploadValues(key: string): void {
     this.shownValues = key;
-    const tracks = this.trackAttribute() >= 0 && this.canColourBy("track") ? this.trackOfVertex() : null;
+    const tracks = this.trackOfVertex();
     const values = key === "component" ? this.componentOfVertex() : key === "track" ? tracks
       : key.startsWith("attribute:") ? this.mesh.attributes[Number(key.slice(10))]! : null;
     this.surface.setValues(values, tracks);
@@ -424,12 +432,13 @@ export class App {
     this.componentOfVertex();
     return this.components!.count;
   }
-  /// Of each vertex the id of its track.
-  trackOfVertex(): number[] | Uint16Array {
+  /// Of each vertex the id of its track or NO_TRACK; null where the surface has none, as at other isovalues than the
+  /// page's own.
+  trackOfVertex(): Uint16Array | null {
     const k = this.trackAttribute();
     const attribute = this.metadata.attributes[k];
-    if (attribute?.kind !== "label") return [];
-    return this.mesh.attributes[k]!.map((level) => attribute.labels[level]! & 0xffff);
+    if (attribute?.kind !== "label" || !this.isOwnSurface) return null;
+    return this.mesh.attributes[k]!.map((level) => attribute.labels[level]! & NO_TRACK);
   }
 
   private applyClip(): void {

@@ -1,6 +1,6 @@
 // Reads the point of the surface under the pointer.
 import { Raycaster, Vector2, Vector3 } from "three";
-import { type App, element } from "./app";
+import { type App, element, NO_TRACK } from "./app";
 import { readable } from "./space";
 import type { Triangles } from "./slice";
 
@@ -48,17 +48,18 @@ export function pick(app: App, x: number, y: number): (Hit & { triangles: Triang
 }
 
 /// What there is to say about a point of the surface.
-export function describe(app: App, hit: NonNullable<ReturnType<typeof pick>>): string {
+export function describe(app: App, hit: NonNullable<ReturnType<typeof pick>>): string[] {
   const lines = app.space.axes.map((axis, k) => {
     const scene = hit.weights.reduce((sum, weight, i) => sum + weight * hit.triangles.points[12 * hit.triangle + 4 * i + k]!, 0);
     const step = (axis.maximum - axis.minimum) / 1000;
     return `${axis.name} = ${readable(app.space.coordinate(k, scene), step)} ${axis.unit}`.trim();
   });
   const vertex = app.mesh.simplices[4 * hit.triangles.simplices[hit.triangle]!]!;
-  const track = app.trackAttribute() >= 0 ? app.trackOfVertex()[vertex] : undefined;
-  if (track !== undefined) lines.push(`track ${track}`);
+  const track = app.trackOfVertex()?.[vertex];
+  if (track === NO_TRACK) lines.push("no track: it begins and ends between two steps");
+  else if (track !== undefined) lines.push(`track ${track}`);
   else lines.push(`component ${app.componentOfVertex()[vertex]! + 1} of ${app.componentCount()}`);
-  app.metadata.attributes.forEach((attribute, k) => {
+  if (app.isOwnSurface) app.metadata.attributes.forEach((attribute, k) => {
     const level = app.mesh.attributes[k]![vertex]!;
     if (attribute.kind === "scalar") {
       const range = attribute.maximum - attribute.minimum;
@@ -68,7 +69,7 @@ export function describe(app: App, hit: NonNullable<ReturnType<typeof pick>>): s
     }
   });
   if (app.metadata.isovalue !== undefined) lines.push(`${app.metadata.field || "value"} = ${app.shownIsovalue}`);
-  return lines.join("\n");
+  return lines;
 }
 
 export function buildPicking(app: App): void {
@@ -80,13 +81,10 @@ export function buildPicking(app: App): void {
     down = null;
     if (!still || event.button !== 0) return;
     const hit = pick(app, event.offsetX, event.offsetY);
-    app.view.marker = hit ? { point: hit.point, text: describe(app, hit) } : null;
-    if (hit && app.state.colour === "track") {
-      const track = app.trackOfVertex()[app.mesh.simplices[4 * hit.triangles.simplices[hit.triangle]!]!]!;
-      app.set({ highlight: track });
-    } else if (app.state.colour === "track") {
-      app.set({ highlight: -1 });
-    }
+    app.view.marker = null;
+    if (hit) app.mark(hit.point, describe(app, hit));
+    const track = hit && app.trackOfVertex()?.[app.mesh.simplices[4 * hit.triangles.simplices[hit.triangle]!]!];
+    if (app.colouring.key === "track") app.set({ highlight: track === NO_TRACK ? -1 : track ?? -1 });
     app.view.request();
   });
 }

@@ -242,7 +242,8 @@ export function buildTracking(app: App): void {
   const glyph = (event: TrackEvent, named: boolean): SVGElement => {
     const at = y(trackOf(event));
     const label = eventText(app, event);
-    const group = svg("g", { class: isMinor(event.type) ? "glyph minor" : "glyph", transform: `translate(${x(event.time)} ${at})`, tabindex: 0, role: "button", "aria-label": label, "data-event": event.type });
+    // By the keyboard one goes from event to event, instead of through all of them to the time line.
+    const group = svg("g", { class: isMinor(event.type) ? "glyph minor" : "glyph", transform: `translate(${x(event.time)} ${at})`, tabindex: -1, role: "button", "aria-label": label, "data-event": event.type });
     const title = svg("title", {});
     title.textContent = label;
     group.append(glyphOf(event.type), title);

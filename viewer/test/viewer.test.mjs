@@ -43,6 +43,20 @@ const openPanel = async (page) => {
     return getComputedStyle(panel).visibility === "visible" && panel.getAnimations().length === 0;
   });
 };
+/// Clicks the point of the surface that is nearest to the eye; gives where that is.
+async function clickSurface(page) {
+  const place = await page.evaluate(() => {
+    const { positions } = hyperiso.slice();
+    let best = 0;
+    const eye = hyperiso.view.camera.position;
+    const distance = (i) => Math.hypot(positions[i] - eye.x, positions[i + 1] - eye.y, positions[i + 2] - eye.z);
+    for (let i = 0; i < hyperiso.slice().count * 9; i += 9) if (distance(i) < distance(best)) best = i;
+    const centre = [0, 1, 2].map((k) => (positions[best + k] + positions[best + 3 + k] + positions[best + 6 + k]) / 3);
+    return { at: hyperiso.view.project(eye.clone().fromArray(centre)), centre };
+  });
+  await page.click("#view", { position: { x: place.at[0], y: place.at[1] } });
+  return place.centre;
+}
 /// Moves a slider as a hand does: the value, and the event that tells.
 const slide = (page, selector, value) => page.$eval(selector, (element, value) => {
   element.value = value;
@@ -429,20 +443,12 @@ describe("the page of a surface in space and time", () => {
   test("a click on the surface reads the point; beside it, nothing", async () => {
     await reset();
     await page.evaluate(() => hyperiso.moveTo(0.4));
-    const place = await page.evaluate(() => {
-      const { positions } = hyperiso.slice();
-      let best = 0;
-      const eye = hyperiso.view.camera.position;
-      const distance = (i) => Math.hypot(positions[i] - eye.x, positions[i + 1] - eye.y, positions[i + 2] - eye.z);
-      for (let i = 0; i < hyperiso.slice().count * 9; i += 9) if (distance(i) < distance(best)) best = i;
-      const centre = [0, 1, 2].map((k) => (positions[best + k] + positions[best + 3 + k] + positions[best + 6 + k]) / 3);
-      return { at: hyperiso.view.project(eye.clone().fromArray(centre)), centre };
-    });
-    await page.click("#view", { position: { x: place.at[0], y: place.at[1] } });
+    const centre = await clickSurface(page);
     const text = await page.evaluate(() => hyperiso.view.marker.text);
     assert.match(text, /^x = \S+ mm\ny = \S+ mm\nz = \S+ mm\nt = 0\.400 s\ncomponent 1 of 1\ndensity = 0\.5$/);
     const read = [...text.matchAll(/= (\S+) mm/g)].map((match) => Number(match[1]));
-    place.centre.forEach((x, k) => near(read[k], x, 0.1));
+    centre.forEach((x, k) => near(read[k], x, 0.1));
+    assert.equal(await page.textContent("#said"), text.replaceAll("\n", ", "));
     await page.click("#view", { position: { x: 30, y: 300 } });
     assert.equal(await page.evaluate(() => hyperiso.view.marker), null);
   });
@@ -778,6 +784,14 @@ describe("the events of a page", () => {
     assert.equal(await state(page, "playing"), false);
     assert.equal(await state(page, "hide"), "genus,touch");
     assert.equal(await page.locator(".mark").count(), 3);
+  });
+
+  test("do not stand between the keyboard and the time line", async () => {
+    await page.focus(".lane >> nth=-1");
+    await page.keyboard.press("Tab");
+    assert.equal(await page.evaluate(() => document.activeElement.id), "step-back");
+    await page.keyboard.press("]");
+    assert.match(await page.textContent("#said"), /^(merge|birth|death), .*, t = 0\.\d+ s$/);
   });
 
   test("stay hidden in the address of the page", async () => {
@@ -1151,6 +1165,8 @@ describe("pages that extract", { skip: fieldPages ? false : "built without the e
     await page.press("#isovalue-number", "Enter");
     await settled(page, 60);
     const sixty = await arrays(page);
+    await clickSurface(page);
+    assert.match(await page.evaluate(() => hyperiso.view.marker.text), /density = 60$/);
     await page.waitForFunction(() => location.hash.includes("isovalue=60"));
     const address = await page.evaluate(() => location.hash);
 
