@@ -88,7 +88,11 @@ function stepText(app: App, position: number): string {
 
 export function buildKeys(app: App, save: { picture(): void }): void {
   const help = element<HTMLDialogElement>("help");
-  element("help-button").addEventListener("click", () => help.showModal());
+  const showHelp = (): void => {
+    help.showModal();
+    help.scrollTop = 0; // the button that closes it, which has the focus now, is at its end
+  };
+  element("help-button").addEventListener("click", showHelp);
   const time = app.space.timeAxis;
   element("help-text").textContent = app.space.dimension === 4
     ? `The picture is the cut of a surface in four dimensions (${app.space.axes.map((axis) => axis.name).join(", ")}) by a plane` +
@@ -117,7 +121,7 @@ export function buildKeys(app: App, save: { picture(): void }): void {
     c: nextColouring,
     d: () => app.set({ theme: app.dark() ? "light" : "dark" }),
     p: () => save.picture(),
-    "?": () => help.showModal(),
+    "?": showHelp,
     "5": () => app.diagonal(),
     Escape: () => app.set({ highlight: -1 }),
   };

@@ -1035,6 +1035,16 @@ describe("on a phone", () => {
           assert.ok(x >= 0 && y >= 0 && x + w <= width + 0.5 && y + h <= height + 0.5, `${selector}: ${[x, y, w, h]}`);
         }
         assert.ok((await box("#scrub")).width >= 80);
+        await page.evaluate(() => {
+          document.getElementById("title").textContent = "alpha_water_24x24x24x41";
+          document.getElementById("subtitle").textContent = "how much water there is · isovalue 0.5";
+          hyperiso.set({ colour: "time" });
+        });
+        const [heading, legend] = [await box("#subtitle"), await box("#legend")];
+        assert.ok(heading.y + heading.height <= legend.y, JSON.stringify([heading, legend]));
+        await page.tap("#help-button");
+        assert.equal(await page.$eval("#help", (help) => help.scrollTop), 0); // it begins with its beginning
+        await page.keyboard.press("Escape");
         const text = await page.evaluate(() => { const one = document.getElementById("position"); return [one.scrollWidth, one.clientWidth]; });
         assert.ok(text[0] <= text[1], text.join());
         await openPanel(page);
