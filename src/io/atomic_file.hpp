@@ -20,8 +20,8 @@ struct UnfinishedFile;
 // replace an existing file.
 //
 // A new file gets the permissions the umask allows, a replaced one keeps its own; a symbolic link stays, the
-// file it leads to is replaced, or made. Pipes, devices and open descriptors (/dev/stdout, /dev/fd/N) have nothing to
-// rename: they are written as they are.
+// file it leads to is replaced, or made. Pipes, devices and open descriptors (/dev/stdout, /dev/fd/N) have
+// nothing to rename: they are written as they are.
 class AtomicFile {
  public:
   // Error: file_unwritable, naming the target and the system's reason.
