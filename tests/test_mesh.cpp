@@ -5,6 +5,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
+#include <random>
 
 using namespace hyperiso;
 
@@ -136,6 +137,40 @@ TEST(Measure, contents_alone_are_those_of_the_whole) {
     EXPECT_EQ(alone->zero_content_simplices, whole->zero_content_simplices);
   }
   EXPECT_EQ(measure_contents(make_mesh(2, 1, {0, 0, 1, 1}, {0, 2})).error().code, Code::invalid_argument);
+}
+
+// Enough simplices for several blocks, the last of which is not full.
+TEST(Measure, sums_do_not_depend_on_the_threads) {
+  constexpr std::size_t count = 50'001, vertices = 100;
+  for (const int corners : {3, 4}) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> coordinate(-1, 1);
+    std::uniform_int_distribution<std::uint64_t> vertex(0, vertices - 1);
+    Mesh mesh(3, corners - 1);
+    mesh.positions.reset(3 * vertices, true);
+    for (std::size_t k = 0; k < 3 * vertices; ++k) mesh.positions.set(k, coordinate(random));
+    mesh.simplices.reset(count * static_cast<std::size_t>(corners), false);
+    for (std::size_t k = 0; k < mesh.simplices.size(); ++k) mesh.simplices.set(k, vertex(random));
+    const auto one = measure_contents(mesh, 1);
+    double expected = 0; // one after the other
+    for (std::size_t first = 0; first < mesh.simplices.size(); first += static_cast<std::size_t>(corners)) {
+      Mesh alone(3, corners - 1);
+      alone.positions = mesh.positions;
+      alone.simplices.reset(static_cast<std::size_t>(corners), false);
+      for (std::size_t k = 0; k < alone.simplices.size(); ++k)
+        alone.simplices.set(k, mesh.simplices[first + k]);
+      expected += measure_contents(alone)->content;
+    }
+    EXPECT_NEAR(one->content, expected, 1e-9 * expected);
+    for (const int threads : {0, 2, 3, 7}) {
+      const auto many = measure_contents(mesh, threads);
+      EXPECT_EQ(many->content, one->content);
+      EXPECT_EQ(many->vector_area, one->vector_area);
+      EXPECT_EQ(many->inverted_simplices, one->inverted_simplices);
+      EXPECT_EQ(many->zero_content_simplices, one->zero_content_simplices);
+    }
+    EXPECT_GT(one->zero_content_simplices, 0u); // corners that coincide
+  }
 }
 
 TEST(Measure, empty_mesh_and_bad_index) {

@@ -29,13 +29,14 @@ struct Measure : Contents {
   bool closed = false;          ///< no boundary facets
 };
 
-/// Measures a mesh of (D-1)- or D-simplices in R^D, 2 <= D <= 8. Sums run in the order of the simplices: the
-/// same mesh gives the same bits. Vertices that no simplex uses do not count. Cost: sorts the faces around
-/// each vertex; 8 bytes of memory per corner of a simplex and 16 per vertex. Errors: out_of_memory;
-/// invalid_argument for other dimensions or an index out of range.
-Result<Measure> measure(const Mesh& mesh);
+/// Measures a mesh of (D-1)- or D-simplices in R^D, 2 <= D <= 8. Sums run in the order of the simplices, by
+/// blocks: the same mesh gives the same bits for any number of threads (0: one per processor), which share
+/// the contents. Vertices that no simplex uses do not count. Cost: sorts the faces around each vertex; 8
+/// bytes of memory per corner of a simplex and 16 per vertex. Errors: out_of_memory; invalid_argument for
+/// other dimensions or an index out of range.
+Result<Measure> measure(const Mesh& mesh, int threads = 0);
 
-/// The Contents of that alone, to the bit: one pass over the simplices, no memory. The same errors.
-Result<Contents> measure_contents(const Mesh& mesh);
+/// The Contents of that alone, to the bit: one pass over the simplices, hardly any memory. The same errors.
+Result<Contents> measure_contents(const Mesh& mesh, int threads = 0);
 
 } // namespace hyperiso

@@ -274,6 +274,7 @@ int run(const Extract& options) {
     std::string path = options.output.path;
     if (options.output.wanted() && isovalues.size() > 1) path = with_suffix(path, "iso" + shortest(isovalue));
     std::optional<Surface> surface;
+    const Stopwatch trying;
     if (loaded) {
       ExtractOptions extraction = options.surface.extract_options(options.machine);
       extraction.workspace = &reused->workspace;
@@ -283,9 +284,13 @@ int run(const Extract& options) {
                          : make_surface(options, *loaded, others, isovalue, path, extraction, files);
     }
     if (!surface) { // field and surface together are too much
+      const double tried_seconds = loaded ? trying.seconds() : 0,
+                   read_seconds = loaded ? loaded->read_seconds : 0;
       loaded.reset();
       reused.reset();
       surface = stream_surface(options, opened, isovalue, path, files, given);
+      surface->outcome.read_seconds += read_seconds;
+      if (times == 1) surface->outcome.extract_seconds += tried_seconds; // else the shortest is told
     }
     surfaces.push_back(std::move(*surface));
   }

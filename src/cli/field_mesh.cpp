@@ -45,7 +45,7 @@ Outcome finish(const Mesh& mesh, const FieldMeshOptions& options, const FieldInf
   outcome.path = path;
   if (options.measure) {
     check_memory_to_measure(mesh, memory_limit);
-    outcome.measure = measure_of(mesh, quiet);
+    outcome.measure = measure_of(mesh, quiet, options.machine.thread_count());
   }
   if (options.self_intersections) outcome.self_intersections = self_intersections_of(mesh, quiet);
   if (path.empty()) return outcome;

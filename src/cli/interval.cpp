@@ -26,10 +26,14 @@ IntervalOptions interval_options(const Interval& options) {
   return result;
 }
 
-Contents contents_of(const Mesh& mesh, const Outcome& outcome, bool quiet) {
+// What is told of every volume, and so part of the work; --measure has it already.
+Contents contents_of(const Mesh& mesh, const Interval& options, Outcome& outcome) {
   if (outcome.measure) return *outcome.measure;
-  const ProgressBar bar("measure", quiet);
-  return take(measure_contents(mesh));
+  const ProgressBar bar("measure", options.printing.quiet);
+  const Stopwatch adding;
+  const Contents contents = take(measure_contents(mesh, options.machine.thread_count()));
+  outcome.extract_seconds += adding.seconds();
+  return contents;
 }
 
 std::string report_of(const Outcome& outcome, const Interval& options, const std::vector<double>& levels,
@@ -61,7 +65,7 @@ int run(const Interval& options) {
   Outcome outcome = finish(mesh, options, field.info, options.output.path, files, filling.memory_limit);
   outcome.read_seconds = read_seconds;
   outcome.extract_seconds = extract_seconds;
-  outcome.contents = contents_of(mesh, outcome, options.printing.quiet);
+  outcome.contents = contents_of(mesh, options, outcome);
   take(files.commit());
   if (options.printing.json)
     print_json(json_of(outcome, options, field.info,

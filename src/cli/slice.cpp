@@ -141,7 +141,7 @@ void make_cuts(const Slice& options, const Plan& plan, std::vector<Outcome>& out
     if (outcome.simplices == 0 && !options.printing.quiet)
       print_warning(
           "the plane meets no part of the surface; 'hyperiso info' tells the ranges of axes and values");
-    if (options.measure) outcome.measure = take(measure(mesh));
+    if (options.measure) outcome.measure = take(measure(mesh, options.machine.thread_count()));
     if (outcome.path.empty()) continue;
     const Stopwatch writing;
     take(write_mesh(mesh, outcome.path, options.output.write_options({}, files)));

@@ -43,9 +43,9 @@ Mesh mesh_in(const std::string& path, bool quiet) {
   return take(read_mesh(path));
 }
 
-Measure measure_of(const Mesh& mesh, bool quiet) {
+Measure measure_of(const Mesh& mesh, bool quiet, int threads) {
   const ProgressBar bar("measure", quiet);
-  return take(measure(mesh));
+  return take(measure(mesh, threads));
 }
 
 void check_memory_to_measure(const Mesh& mesh, std::uint64_t limit) {

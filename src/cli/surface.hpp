@@ -21,7 +21,7 @@ std::string name_of_axis(const std::vector<Axis>& axes, std::size_t axis);
 std::vector<Axis> axes_of(const Mesh& mesh);
 
 Mesh mesh_in(const std::string& path, bool quiet);
-Measure measure_of(const Mesh& mesh, bool quiet);
+Measure measure_of(const Mesh& mesh, bool quiet, int threads = 0);
 // Fails if the mesh and --measure of it take more memory than the limit.
 void check_memory_to_measure(const Mesh& mesh, std::uint64_t limit);
 std::uint64_t bytes_of(const Mesh& mesh);

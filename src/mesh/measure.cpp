@@ -1,11 +1,13 @@
 #include "hyperiso/measure.hpp"
 
 #include "core/determinant.hpp"
+#include "core/parallel.hpp"
 #include "core/text.hpp"
 #include "core/union_find.hpp"
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -17,7 +19,7 @@ namespace {
 constexpr int max_dimension = 8;
 constexpr std::size_t max_corners = max_dimension + 1;
 
-double factorial(int n) { return n <= 1 ? 1 : n * factorial(n - 1); }
+constexpr double factorial(int n) { return n <= 1 ? 1 : n * factorial(n - 1); }
 
 // The simplices around each vertex.
 class Incidence {
@@ -125,35 +127,39 @@ class FaceCounter {
   std::array<std::vector<Face>, Corners + 1> faces_; // by number of corners
 };
 
-// Adds up content and vector area.
-class ContentSum {
- public:
-  explicit ContentSum(const Mesh& mesh)
-      : dimension_(static_cast<std::size_t>(mesh.dimension)),
-        corners_(static_cast<std::size_t>(mesh.simplex_dimension) + 1), edges_((corners_ - 1) * dimension_) {}
+// What simplices add up to.
+template <std::size_t D>
+struct ContentSums {
+  double content = 0;
+  std::array<double, D> vector_area{};
+  std::uint64_t inverted_simplices = 0, zero_content_simplices = 0;
+};
 
+// Simplices with `Corners` corners in D dimensions, one after the other.
+template <std::size_t D, std::size_t Corners>
+class ContentAdder {
+ public:
   template <class Real, class Index>
-  void add(std::span<const Real> positions, std::span<const Index> simplex, Contents& sums) {
-    const std::size_t start = simplex[0] * dimension_;
-    for (std::size_t corner = 1; corner < corners_; ++corner)
-      for (std::size_t k = 0; k < dimension_; ++k)
-        edges_[(corner - 1) * dimension_ + k] =
-            static_cast<double>(positions[simplex[corner] * dimension_ + k]) -
-            static_cast<double>(positions[start + k]);
-    const double signed_content = corners_ == dimension_ + 1 ? volume() : area(sums.vector_area);
-    const double content = std::abs(signed_content);
+  void add(std::span<const Real> positions, std::span<const Index> simplex, ContentSums<D>& sums) {
+    const std::size_t start = simplex[0] * D;
+    for (std::size_t corner = 1; corner < Corners; ++corner)
+      for (std::size_t k = 0; k < D; ++k)
+        edges_[(corner - 1) * D + k] = static_cast<double>(positions[simplex[corner] * D + k]) -
+                                       static_cast<double>(positions[start + k]);
+    double content = 0;
+    if constexpr (Corners == D + 1) {
+      auto rows = edges_;
+      const double determinant = eliminate(rows.data(), D);
+      content = std::abs(determinant / factorial(D));
+      if (determinant < 0 && -determinant > rounding_of(positions, simplex)) ++sums.inverted_simplices;
+    } else {
+      content = area(sums.vector_area);
+    }
     sums.content += content;
-    if (signed_content < 0 && corners_ == dimension_ + 1 && -determinant_ > rounding_of(positions, simplex))
-      ++sums.inverted_simplices;
     if (content == 0) ++sums.zero_content_simplices;
   }
 
  private:
-  double volume() {
-    determinant_ = determinant(edges_, static_cast<int>(dimension_));
-    return determinant_ / factorial(static_cast<int>(dimension_));
-  }
-
   // The most that the rounding of coordinates can change the determinant by. With every coordinate off by
   // some units in its last place, a row of lengths n is off by d at most, and (Hadamard) the determinant by
   // no more than the sum over the rows of d times the lengths n + d of the others.
@@ -162,18 +168,17 @@ class ContentSum {
     constexpr double units = 4; // of interpolation between two samples, in each corner
     double largest = 0;
     for (const Index vertex : simplex)
-      for (std::size_t k = 0; k < dimension_; ++k)
-        largest = std::max(largest, std::abs(static_cast<double>(positions[vertex * dimension_ + k])));
+      for (std::size_t k = 0; k < D; ++k)
+        largest = std::max(largest, std::abs(static_cast<double>(positions[vertex * D + k])));
     const double off = 2 * units * static_cast<double>(std::numeric_limits<Real>::epsilon()) * largest *
-                       std::sqrt(static_cast<double>(dimension_));
+                       std::sqrt(static_cast<double>(D));
     double sum = 0;
-    for (std::size_t row = 0; row < dimension_; ++row) {
+    for (std::size_t row = 0; row < D; ++row) {
       double product = off;
-      for (std::size_t other = 0; other < dimension_; ++other) {
+      for (std::size_t other = 0; other < D; ++other) {
         if (other == row) continue;
         double squared = 0;
-        for (std::size_t k = 0; k < dimension_; ++k)
-          squared += edges_[other * dimension_ + k] * edges_[other * dimension_ + k];
+        for (std::size_t k = 0; k < D; ++k) squared += edges_[other * D + k] * edges_[other * D + k];
         product *= std::sqrt(squared) + off;
       }
       sum += product;
@@ -182,38 +187,79 @@ class ContentSum {
   }
 
   // The normal n with det[n; edges] = |n|^2 has the cofactors of the first row as coordinates.
-  double area(std::vector<double>& sum) {
-    const double scale = 1 / factorial(static_cast<int>(dimension_) - 1);
+  double area(std::array<double, D>& sum) const {
+    const double scale = 1 / factorial(D - 1);
     double squared = 0;
-    for (std::size_t left_out = 0; left_out < dimension_; ++left_out) {
-      minor_.clear();
-      for (std::size_t row = 0; row + 1 < dimension_; ++row)
-        for (std::size_t k = 0; k < dimension_; ++k)
-          if (k != left_out) minor_.push_back(edges_[row * dimension_ + k]);
-      const double cofactor =
-          determinant(minor_, static_cast<int>(dimension_) - 1) * (left_out % 2 == 0 ? 1 : -1);
+    for (std::size_t left_out = 0; left_out < D; ++left_out) {
+      std::array<double, (D - 1) * (D - 1)> minor;
+      std::size_t place = 0;
+      for (std::size_t row = 0; row + 1 < D; ++row)
+        for (std::size_t k = 0; k < D; ++k)
+          if (k != left_out) minor[place++] = edges_[row * D + k];
+      const double cofactor = eliminate(minor.data(), D - 1) * (left_out % 2 == 0 ? 1 : -1);
       sum[left_out] += cofactor * scale;
       squared += cofactor * cofactor;
     }
     return std::sqrt(squared) * scale;
   }
 
-  std::size_t dimension_, corners_;
-  std::vector<double> edges_, minor_; // rows
-  double determinant_ = 0;            // of the edges of a volume's simplex
+  std::array<double, (Corners - 1) * D> edges_; // rows
 };
+
+// Sums run over blocks of so many simplices, and over the blocks in their order: whatever the number of
+// threads, the same are added to the same.
+constexpr std::size_t block_simplices = std::size_t{1} << 14;
+
+template <std::size_t D, std::size_t Corners, class Real, class Index>
+void add_contents(std::span<const Real> positions, std::span<const Index> simplices, int threads,
+                  Contents& contents) {
+  const std::size_t count = simplices.size() / Corners,
+                    blocks = (count + block_simplices - 1) / block_simplices;
+  std::vector<ContentSums<D>> sums(blocks);
+  std::atomic<std::size_t> next = 0;
+  const auto workers =
+      std::min(static_cast<std::size_t>(worker_count(threads)), std::max<std::size_t>(blocks, 1));
+  run_workers(static_cast<int>(workers), [&](int) {
+    for (std::size_t block; (block = next++) < blocks;) {
+      ContentAdder<D, Corners> adder;
+      ContentSums<D> sum;
+      const std::size_t end = std::min(count, (block + 1) * block_simplices);
+      for (std::size_t simplex = block * block_simplices; simplex < end; ++simplex)
+        adder.add(positions, simplices.subspan(simplex * Corners, Corners), sum);
+      sums[block] = sum;
+    }
+  });
+  for (const ContentSums<D>& sum : sums) {
+    contents.content += sum.content;
+    for (std::size_t axis = 0; axis < contents.vector_area.size(); ++axis)
+      contents.vector_area[axis] += sum.vector_area[axis];
+    contents.inverted_simplices += sum.inverted_simplices;
+    contents.zero_content_simplices += sum.zero_content_simplices;
+  }
+}
+
+// Of a surface or of a volume, as the mesh says.
+template <std::size_t Corners, class Real, class Index>
+void add_contents(const Mesh& mesh, std::span<const Real> positions, std::span<const Index> simplices,
+                  int threads, Contents& contents) {
+  if (mesh.simplex_dimension < mesh.dimension) {
+    contents.vector_area.assign(static_cast<std::size_t>(mesh.dimension), 0);
+    if constexpr (Corners <= max_dimension)
+      add_contents<Corners, Corners>(positions, simplices, threads, contents);
+  } else {
+    if constexpr (Corners > 2) add_contents<Corners - 1, Corners>(positions, simplices, threads, contents);
+  }
+}
 
 template <std::size_t Corners, class Real, class Index>
 void measure_arrays(const Mesh& mesh, std::span<const Real> positions, std::span<const Index> simplices,
-                    Measure& measure) {
+                    int threads, Measure& measure) {
+  add_contents<Corners>(mesh, positions, simplices, threads, measure);
   const std::size_t vertices = mesh.vertex_count();
-  ContentSum content(mesh);
   UnionFind components(vertices);
-  for (std::size_t start = 0; start < simplices.size(); start += Corners) {
-    const auto simplex = simplices.subspan(start, Corners);
-    content.add(positions, simplex, measure);
-    for (const Index vertex : simplex) components.unite(simplex[0], vertex);
-  }
+  for (std::size_t start = 0; start < simplices.size(); start += Corners)
+    for (std::size_t corner = 1; corner < Corners; ++corner)
+      components.unite(simplices[start], simplices[start + corner]);
 
   const Incidence incidence(simplices, Corners, vertices);
   FaceCounter<Corners> faces;
@@ -225,14 +271,15 @@ void measure_arrays(const Mesh& mesh, std::span<const Real> positions, std::span
   measure.closed = measure.boundary_facets == 0;
 }
 
-template <std::size_t Corners = 2>
-void measure_mesh(const Mesh& mesh, Measure& measure) {
+// Calls use(positions, simplices, corners), `corners` those of a simplex as a constant.
+template <std::size_t Corners = 2, class Use>
+void with_arrays(const Mesh& mesh, Use&& use) {
   if constexpr (Corners <= max_corners) {
     if (static_cast<std::size_t>(mesh.simplex_dimension) + 1 != Corners)
-      return measure_mesh<Corners + 1>(mesh, measure);
+      return with_arrays<Corners + 1>(mesh, use);
     mesh.positions.visit([&](auto positions) {
       mesh.simplices.visit(
-          [&](auto simplices) { measure_arrays<Corners>(mesh, positions, simplices, measure); });
+          [&](auto simplices) { use(positions, simplices, std::integral_constant<std::size_t, Corners>{}); });
     });
   }
 }
@@ -253,19 +300,15 @@ Status check(const Mesh& mesh) {
   return {};
 }
 
-std::vector<double> no_area(const Mesh& mesh) {
-  return std::vector<double>(
-      mesh.simplex_dimension < mesh.dimension ? static_cast<std::size_t>(mesh.dimension) : 0);
-}
-
 } // namespace
 
-Result<Measure> measure(const Mesh& mesh) {
+Result<Measure> measure(const Mesh& mesh, int threads) {
   if (const Status valid = check(mesh); !valid) return valid.error();
   try {
     Measure measure;
-    measure.vector_area = no_area(mesh);
-    measure_mesh(mesh, measure);
+    with_arrays(mesh, [&](auto positions, auto simplices, auto corners) {
+      measure_arrays<corners()>(mesh, positions, simplices, threads, measure);
+    });
     return measure;
   } catch (const std::bad_alloc&) {
     return Error{Code::out_of_memory,
@@ -273,20 +316,14 @@ Result<Measure> measure(const Mesh& mesh) {
   }
 }
 
-Result<Contents> measure_contents(const Mesh& mesh) {
+Result<Contents> measure_contents(const Mesh& mesh, int threads) {
   if (const Status valid = check(mesh); !valid) return valid.error();
   try {
-    Contents sums;
-    sums.vector_area = no_area(mesh);
-    ContentSum content(mesh);
-    const auto corners = static_cast<std::size_t>(mesh.simplex_dimension) + 1;
-    mesh.positions.visit([&](auto positions) {
-      mesh.simplices.visit([&](auto simplices) {
-        for (std::size_t start = 0; start < simplices.size(); start += corners)
-          content.add(positions, simplices.subspan(start, corners), sums);
-      });
+    Contents contents;
+    with_arrays(mesh, [&](auto positions, auto simplices, auto corners) {
+      add_contents<corners()>(mesh, positions, simplices, threads, contents);
     });
-    return sums;
+    return contents;
   } catch (const std::bad_alloc&) {
     return Error{Code::out_of_memory, "not enough memory to measure a simplex"};
   }
