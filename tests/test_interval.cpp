@@ -275,6 +275,24 @@ TEST(Interval, missing_data_and_levels_beyond_the_type) {
   EXPECT_EQ(filled(bytes, {500, 1000}).simplex_count(), 0u);
 }
 
+// What the lifted surface takes, and the two attributes of its vertices.
+TEST(Interval, memory_limit_counts_the_attributes) {
+  const auto field = check::random_field<float, 3>({12, 11, 10}, 1000, 1);
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    IntervalOptions options;
+    options.precision = precision;
+    const auto volume = interval(field.view, -200, 200, options);
+    ASSERT_TRUE(volume);
+    const std::size_t number = precision == Precision::f64 ? 8 : 4;
+    options.memory_limit = volume->vertex_count() * (4 * number + 8 + 16) + volume->simplices.bytes();
+    EXPECT_TRUE(interval(field.view, -200, 200, options));
+    --options.memory_limit;
+    const auto too_large = interval(field.view, -200, 200, options);
+    ASSERT_FALSE(too_large);
+    EXPECT_EQ(too_large.error().code, Code::out_of_memory);
+  }
+}
+
 // Where the field is flat at a level it belongs to one of the volumes on its two sides.
 TEST(Interval, flat_at_a_level) {
   const auto flat = check::make_field<float, 2>(check::box_grid<2>(3, 0, 2), [](const auto&) { return 1.0; });

@@ -3,6 +3,7 @@
 #include "core/instantiate.hpp"
 #include "core/text.hpp"
 #include "extract/engine.hpp"
+#include "extract/surface_memory.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,18 +39,19 @@ bool mirrored(const FieldView<const T, D>& field, Inside inside) {
 
 // Takes the last coordinate off the positions, into attributes.
 template <int D>
-void project(const Mesh& lifted, std::span<const double> levels, VolumeMesh<D>& volume) {
+void project(Mesh& lifted, std::span<const double> levels, VolumeMesh<D>& volume) {
   const std::size_t vertices = lifted.vertex_count();
   std::vector<double> level(vertices), isovalue(vertices);
-  volume.positions.reset(vertices * D, lifted.positions.wide());
-  for (std::size_t vertex = 0; vertex < vertices; ++vertex) {
+  volume.positions = std::move(lifted.positions);
+  for (std::size_t vertex = 0; vertex < vertices; ++vertex) { // moved down, never over what comes later
     for (std::size_t k = 0; k < D; ++k)
-      volume.positions.set(vertex * D + k, lifted.positions[vertex * (D + 1) + k]);
-    level[vertex] = lifted.positions[vertex * (D + 1) + D];
+      volume.positions.set(vertex * D + k, volume.positions[vertex * (D + 1) + k]);
+    level[vertex] = volume.positions[vertex * (D + 1) + D];
     const auto below = std::min(static_cast<std::size_t>(level[vertex]), levels.size() - 2);
     isovalue[vertex] =
         std::lerp(levels[below], levels[below + 1], level[vertex] - static_cast<double>(below));
   }
+  volume.positions.resize(vertices * D);
   volume.attributes.push_back({"level", Attribute::Location::vertex, 1, std::move(level)});
   volume.attributes.push_back({"isovalue", Attribute::Location::vertex, 1, std::move(isovalue)});
 }
@@ -73,6 +75,12 @@ Result<VolumeMesh<D>> fill(const FieldView<const T, D>& field, std::span<const d
   SimplexMesh<D + 1> lifted;
   if (const Status made = run_engine(samples, form, options, EngineOptions{}, lifted); !made)
     return made.error();
+  const std::uint64_t vertices = lifted.vertex_count();
+  const std::uint64_t needed =
+      vertices * (bytes_per_vertex(D + 1, lifted.positions.wide(), options.keep_edges) + 2 * sizeof(double)) +
+      lifted.simplices.bytes();
+  if (const Status fits = check_memory(vertices, lifted.simplex_count(), needed, options.memory_limit); !fits)
+    return fits.error();
   project(lifted, levels, volume);
   volume.simplices = std::move(lifted.simplices);
   volume.active_cells = lifted.active_cells;
