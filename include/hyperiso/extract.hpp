@@ -87,8 +87,8 @@ struct ExtractOptions {
   Precision precision = Precision::f32; ///< of the positions; they are computed in double in any case
   bool keep_edges = true; ///< fill Mesh::edges and Mesh::grid_axes (8 bytes per vertex; not barycentric)
   /// Bytes the surface may take; with barycentric, and in six and more dimensions, together with all that is
-  /// held to make it. Checked before they are taken. The tables of the methods, made once for the process,
-  /// are not counted: up to 20 MB.
+  /// held to make it. Checked before they are taken. Tables, made once for the process, are not counted:
+  /// up to 20 MB, and up to 140 MB of entries that are kept in five dimensions.
   std::uint64_t memory_limit = UINT64_MAX;
   int threads = 0; ///< 0: one per processor; the result is the same for any number
   Progress progress = {};

@@ -42,11 +42,10 @@ void PrintOptions::add_to(CLI::App& app) {
 }
 
 void MachineOptions::add_to(CLI::App& app) {
-  add_text(
-      app, "--memory", memory, "SIZE", machine_group,
-      "the most memory to use, for example 800M or 4G (K, M, G, T: powers of 1024); what takes more and "
-      "cannot be done step by step is an error. The tables of the methods, up to 20 MB, come on top. Left "
-      "out: 80 % of what is free");
+  add_text(app, "--memory", memory, "SIZE", machine_group,
+           "the most memory to use, for example 800M or 4G (K, M, G, T: powers of 1024); what takes more and "
+           "cannot be done step by step is an error. The tables of the methods come on top: up to 20 MB, "
+           "and 140 MB for 5D fields and volumes of 4D ones. Left out: 80 % of what is free");
   add_text(app, "--threads", threads, "N", machine_group,
            "the most threads to use; left out: one for each processor. The result does not depend on it");
 }
