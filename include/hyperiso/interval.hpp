@@ -40,9 +40,9 @@ struct IntervalOptions : ExtractOptions {
 /// A volume of a 4D field, whose last axis is time, is one through time (paper 003 section 4): `slice` of it
 /// at a stored time is the volume of that step, vertex for vertex and simplex for simplex.
 ///
-/// Types: all of SampleType; D = 2, 3, 4. Cost: that of an extraction of the lifted field; `memory_limit` is for
-/// its surface, of which the volume is made in place, and the attributes.
-/// Errors: those of `extract`; invalid_isovalue if there are fewer than two levels or they do not increase.
+/// Types: all of SampleType; D = 2, 3, 4. Cost: that of an extraction of the lifted field; `memory_limit` is
+/// for its surface, of which the volume is made in place, and the attributes. Errors: those of `extract`;
+/// invalid_isovalue if there are fewer than two levels or they do not increase.
 template <class T, int D>
 Result<VolumeMesh<D>> interval(const FieldView<const T, D>& field, std::span<const double> levels,
                                const IntervalOptions& options = {});
