@@ -93,19 +93,19 @@ class CandidateSearch {
   std::vector<GridEdge> list() const {
     std::vector<GridEdge> edges;
     std::size_t number = 0;
-    std::array<std::int64_t, space> index{};
     for (std::size_t row = 0; row < crossings_->rows(); ++row) {
+      if (!crossings_->any(row)) continue;
       unsigned present = 0;
-      for (int axis = 1; axis < space; ++axis)
-        present |= PoleTable::present(axis, index[axis], crossings_->dims()[axis]);
-      for (std::size_t word = 0; word < crossings_->lower().words() && crossings_->any(row); ++word)
+      auto rest = static_cast<std::int64_t>(row);
+      for (int axis = 1; axis < space; rest /= crossings_->dims()[axis++])
+        present |= PoleTable::present(axis, rest % crossings_->dims()[axis], crossings_->dims()[axis]);
+      for (std::size_t word = 0; word < crossings_->lower().words(); ++word)
         for (std::uint64_t changed = crossings_->changes(row, word); changed != 0; changed &= changed - 1) {
           const std::size_t x = 64 * word + static_cast<std::size_t>(std::countr_zero(changed));
           const unsigned along = PoleTable::present(0, static_cast<std::int64_t>(x), crossings_->dims()[0]);
           if (!pole_table_.is_regular(present | along, poles_[number++]))
             edges.push_back(crossings_->edge(row, x));
         }
-      for (int axis = 1; axis < space && ++index[axis] == crossings_->dims()[axis]; ++axis) index[axis] = 0;
     }
     return edges;
   }

@@ -36,8 +36,8 @@ class Regions {
     Kind kind;
     Region region;
   };
-  // Neighbouring rows of a plane, the rows with one index along all axes but 0 and 1: one row, or several of
-  // one run each and all of one kind, which share it.
+  // Neighbouring rows of a plane, the rows with one index along all axes but 0 and 1: one row, or several
+  // that share their only run.
   struct Band {
     std::int64_t begin, end; // along axis 1
     std::uint32_t first_run, end_run;
@@ -107,7 +107,7 @@ class Regions {
     };
   }
 
-  // `is_uniform(row)`: of a row known to be all inside or all outside.
+  // `is_uniform(row)`: whether a row is known to be all inside or all outside.
   template <class Uniform, class Inside, class Missing>
   void find_bands(Uniform&& is_uniform, Inside&& inside, Missing&& missing) {
     std::size_t planes = 1, row = 0;
@@ -116,18 +116,16 @@ class Regions {
       first_band_.push_back(bands_.size());
       for (std::int64_t y = 0; y < dims_[1]; ++y, ++row) {
         const auto first_run = static_cast<std::uint32_t>(runs_.size());
-        if (is_uniform(row))
-          runs_.push_back({0, dims_[0], kind_of(inside(row, 0) & 1, false), 0});
-        else
+        if (!is_uniform(row)) {
           find_runs(row, inside, missing);
-        const Band band{y, y + 1, first_run, static_cast<std::uint32_t>(runs_.size())};
-        if (y > 0 && band.is_uniform() && bands_.back().is_uniform() &&
-            runs_[bands_.back().first_run].kind == runs_.back().kind) {
-          runs_.pop_back();
-          bands_.back().end = band.end;
+        } else if (const Kind kind = kind_of(inside(row, 0) & 1, false);
+                   y > 0 && bands_.back().is_uniform() && runs_.back().kind == kind) {
+          bands_.back().end = y + 1;
+          continue;
         } else {
-          bands_.push_back(band);
+          runs_.push_back({0, dims_[0], kind, 0});
         }
+        bands_.push_back({y, y + 1, first_run, static_cast<std::uint32_t>(runs_.size())});
       }
     }
     first_band_.push_back(bands_.size());

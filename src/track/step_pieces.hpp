@@ -24,6 +24,10 @@ class StepPieces {
     std::iota(piece_.begin(), piece_.end(), 0u); // parents at first
     surface.simplices.visit([&](auto corners) {
       for (auto corner = corners.begin(); corner != corners.end();) {
+        if (have_one_parent<S>(corner)) {
+          corner += S;
+          continue;
+        }
         std::uint32_t first = root(static_cast<std::uint32_t>(*corner++));
         for (std::size_t i = 1; i < S; ++i) {
           const std::uint32_t other = root(static_cast<std::uint32_t>(*corner++));
@@ -96,6 +100,13 @@ class StepPieces {
            edge % row_length_;
   }
   GridEdge directions() const { return (GridEdge{1} << space_) - 1; }
+  template <int S, class Corner>
+  bool have_one_parent(Corner first) const { // the corners of a simplex: most are united already
+    for (int i = 1; i < S; ++i)
+      if (piece_[static_cast<std::size_t>(first[i])] != piece_[static_cast<std::size_t>(*first)])
+        return false;
+    return true;
+  }
   std::uint32_t root(std::uint32_t vertex) {
     while (piece_[vertex] != vertex) vertex = piece_[vertex] = piece_[piece_[vertex]];
     return vertex;

@@ -166,32 +166,49 @@ class SurfaceMeter {
     return positions_[vertex * D + axis] - low_end_[axis];
   }
 
+  // Of simplices of one piece and group that follow each other.
+  struct Sum {
+    std::uint32_t piece = UINT32_MAX, group = no_group;
+    double signed_volume = 0, area = 0;
+    std::int64_t simplices = 0, cells = 0;
+  };
+
   template <class GroupOf>
   void add_simplices(const GroupOf& group_of) {
     std::vector<int> segments_at(D == 2 ? vertices_.size() : 0);
+    Sum sum;
     surface_.simplices.visit([&](auto all_corners) {
       for (auto first = all_corners.begin(); first != all_corners.end(); first += D) {
         std::array<std::uint64_t, D> corners;
         std::copy_n(first, D, corners.begin());
-        PieceMeasure& piece = measure_.pieces[pieces_.piece(corners[0])];
-        const double area = add_to_volume(corners, piece);
+        const std::uint32_t piece = pieces_.piece(corners[0]), group = group_of(corners[0]);
+        if (piece != sum.piece || group != sum.group) {
+          add(sum);
+          sum = {piece, group};
+        }
+        add_size(corners, sum);
+        ++sum.simplices;
+        if (group != no_group) sum.cells += cells_.is_next(group, vertices_, corners);
         if constexpr (D == 2)
           for (const std::uint64_t corner : corners) ++segments_at[corner];
         if constexpr (D == 3) find_boundary_edges(corners);
-        const std::uint32_t group = group_of(corners[0]);
-        if (group == no_group) continue;
-        GroupMeasure<D>& measure = measure_.groups[group];
-        measure.area += area;
-        ++measure.simplices;
-        measure.cells += cells_.is_next(group, vertices_, corners);
       }
     });
+    add(sum);
     for (std::size_t vertex = 0; vertex < segments_at.size(); ++vertex)
       if (segments_at[vertex] == 1) measure_.pieces[pieces_.piece(vertex)].closed = false;
   }
+  void add(const Sum& sum) {
+    if (sum.simplices == 0) return;
+    measure_.pieces[sum.piece].signed_volume += sum.signed_volume;
+    if (sum.group == no_group) return;
+    GroupMeasure<D>& measure = measure_.groups[sum.group];
+    measure.area += sum.area;
+    measure.simplices += sum.simplices;
+    measure.cells += sum.cells;
+  }
 
-  // Adds the simplex's share of the volume to its piece and returns its area.
-  double add_to_volume(const std::array<std::uint64_t, D>& corners, PieceMeasure& piece) const {
+  void add_size(const std::array<std::uint64_t, D>& corners, Sum& sum) const {
     std::array<std::array<double, D>, D> p;
     for (std::size_t corner = 0; corner < D; ++corner)
       for (std::size_t axis = 0; axis < D; ++axis) p[corner][axis] = coordinate(corners[corner], axis);
@@ -199,11 +216,11 @@ class SurfaceMeter {
       const double ax = p[1][0] - p[0][0], ay = p[1][1] - p[0][1], az = p[1][2] - p[0][2];
       const double bx = p[2][0] - p[0][0], by = p[2][1] - p[0][1], bz = p[2][2] - p[0][2];
       const double nx = ay * bz - az * by, ny = az * bx - ax * bz, nz = ax * by - ay * bx;
-      piece.signed_volume += 0.5 * nx * ((p[0][0] + p[1][0] + p[2][0]) / 3);
-      return 0.5 * std::sqrt(nx * nx + ny * ny + nz * nz);
+      sum.signed_volume += 0.5 * nx * ((p[0][0] + p[1][0] + p[2][0]) / 3);
+      sum.area += 0.5 * std::sqrt(nx * nx + ny * ny + nz * nz);
     } else {
-      piece.signed_volume += (p[1][1] - p[0][1]) * ((p[0][0] + p[1][0]) / 2);
-      return std::hypot(p[1][0] - p[0][0], p[1][1] - p[0][1]);
+      sum.signed_volume += (p[1][1] - p[0][1]) * ((p[0][0] + p[1][0]) / 2);
+      sum.area += std::hypot(p[1][0] - p[0][0], p[1][1] - p[0][1]);
     }
   }
 
