@@ -24,6 +24,7 @@ class UnionFind {
     return element;
   }
   void unite(std::uint64_t a, std::uint64_t b) {
+    if (parent_[a] == parent_[b]) return;
     a = find(a);
     b = find(b);
     if (a < b)

@@ -85,11 +85,6 @@ class CandidateSearch {
                              [&](unsigned corner, std::uint8_t poles) { poles_[number[corner]] |= poles; });
   }
 
-  static unsigned pair_at(const std::uint64_t* words, std::size_t x) {
-    const std::uint64_t low = words[x / 64] >> (x % 64);
-    return static_cast<unsigned>((x % 64 == 63 ? low | words[x / 64 + 1] << 1 : low) & 3);
-  }
-
   std::vector<GridEdge> list() const {
     std::vector<GridEdge> edges;
     std::size_t number = 0;

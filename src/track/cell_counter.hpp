@@ -23,12 +23,14 @@ class CellCounter {
   // samples that the simplex's vertices lie above (`lower`).
   template <class Vertex, class Corners>
   bool is_next(std::size_t group, const std::vector<Vertex>& vertices, const Corners& corners) {
-    Cell cell = vertices[corners[0]].lower;
-    for (const auto corner : corners)
-      for (std::size_t axis = 0; axis < D; ++axis)
-        cell[axis] = std::min(cell[axis], vertices[corner].lower[axis]);
-    const bool is_next = cell != last_[group];
-    last_[group] = cell;
+    Cell& last = last_[group];
+    bool is_next = false;
+    for (std::size_t axis = 0; axis < D; ++axis) {
+      std::int32_t lowest = vertices[corners[0]].lower[axis];
+      for (const auto corner : corners) lowest = std::min(lowest, vertices[corner].lower[axis]);
+      is_next |= lowest != last[axis];
+      last[axis] = lowest;
+    }
     return is_next;
   }
 

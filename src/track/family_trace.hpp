@@ -160,6 +160,14 @@ class SampledCells final : public SignedCells<D> {
     return crossing(static_cast<double>(*lower), static_cast<double>(lower[slab_.strides[D - 1]]), isovalue_);
   }
   const FieldView<const T, D>& slab() const { return slab_; }
+  std::uint32_t code_of(std::uint64_t cell) const override {
+    std::array<std::int64_t, D> lowest{};
+    for (int axis = 0; axis < D - 1; ++axis) {
+      lowest[axis] = static_cast<std::int64_t>(cell % static_cast<std::uint64_t>(this->dims()[axis]));
+      cell /= static_cast<std::uint64_t>(this->dims()[axis]);
+    }
+    return *code_at(&slab_.at(lowest));
+  }
 
  private:
   static constexpr std::uint32_t all_bits = static_cast<std::uint32_t>((std::uint64_t{1} << (1u << D)) - 1);
@@ -177,15 +185,6 @@ class SampledCells final : public SignedCells<D> {
   double time_between(const std::array<std::int64_t, D>& lower) const override {
     return time_from(&slab_.at(lower));
   }
-  std::uint32_t code_of(std::uint64_t cell) const override {
-    std::array<std::int64_t, D> lowest{};
-    for (int axis = 0; axis < D - 1; ++axis) {
-      lowest[axis] = static_cast<std::int64_t>(cell % static_cast<std::uint64_t>(this->dims()[axis]));
-      cell /= static_cast<std::uint64_t>(this->dims()[axis]);
-    }
-    return *code_at(&slab_.at(lowest));
-  }
-
   FieldView<const T, D> slab_;
   double isovalue_;
   SignRule<T, true> above_;

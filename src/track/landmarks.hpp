@@ -61,13 +61,12 @@ class Landmarks {
   // grid, if that is a landmark. For curves on the walls both must lie on one.
   std::optional<std::uint64_t> name(GridEdge a, GridEdge b) const {
     if (!regions_) return std::nullopt;
-    auto first = grid_edge_ends<D>(dims_, a), second = grid_edge_ends<D>(dims_, b);
-    if (first.direction >> space & 1) std::swap(first, second);
-    if (first.direction >> space & 1) return std::nullopt; // both along time
-    const Sample p = in_space(first.lower), q = in_space(first.upper);
-    const Sample lower = in_space(second.lower), upper = in_space(second.upper);
-    const bool spans_face =
-        second.direction >> space & 1 ? lower == p || lower == q : lower == p && upper == q;
+    if (is_along_time(a)) std::swap(a, b);
+    if (is_along_time(a)) return std::nullopt; // both are
+    const auto ends = grid_edge_ends<D>(dims_, a);
+    const Sample p = in_space(ends.lower), q = in_space(ends.upper);
+    const bool spans_face = is_along_time(b) ? b == edge_along_time(p) || b == edge_along_time(q)
+                                             : b == a + step_offset() || a == b + step_offset();
     if (!spans_face) return std::nullopt;
 
     using Kind = typename Regions<space>::Kind;
@@ -85,6 +84,19 @@ class Landmarks {
     Sample result;
     std::copy_n(index.begin(), space, result.begin());
     return result;
+  }
+  bool is_along_time(GridEdge edge) const { return edge / static_cast<GridEdge>(dims_[0]) >> space & 1; }
+  GridEdge edge_along_time(const Sample& sample) const {
+    std::int64_t row = 1; // of the upper step, where the edge ends
+    for (int axis = space - 1; axis > 0; --axis) row = row * dims_[axis] + sample[axis];
+    return (static_cast<GridEdge>(row) << D | GridEdge{1} << space) * static_cast<GridEdge>(dims_[0]) +
+           static_cast<GridEdge>(sample[0]);
+  }
+  // From the number of an edge within the lower step to that within the upper one.
+  GridEdge step_offset() const {
+    GridEdge samples = 1;
+    for (int axis = 0; axis < space; ++axis) samples *= static_cast<GridEdge>(dims_[axis]);
+    return samples << D;
   }
   // Samples that are on no wall.
   std::uint64_t within(std::size_t row, std::size_t word) const {

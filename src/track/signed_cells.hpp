@@ -28,32 +28,40 @@ class SignedCells {
 
   const std::array<std::int64_t, D>& dims() const { return dims_; }
 
-  // Calls use(cell) for the cells around a grid edge, ascending.
+  // Calls use(cell, slot) for the cells around a grid edge, ascending, with the slot of the edge in each.
   template <class Use>
   void for_each_cell_around(GridEdge edge, Use&& use) const {
     const auto ends = grid_edge_ends<D>(dims_, edge);
     for (unsigned around = 0; around < 1u << (D - 1); ++around) { // bit clear: the cell before the edge
       std::int64_t cell = 0;
+      unsigned lower = ends.lower[D - 1] != 0 ? 1u << (D - 1) : 0; // corner of the cell
       bool exists = true;
       for (int axis = D - 2; axis >= 0; --axis) {
         const bool along = ends.direction >> axis & 1, after = around >> axis & 1;
         const std::int64_t index = along ? ends.lower[axis] : ends.lower[axis] - !after;
         exists &= !(along && after) && index >= 0 && index + 1 < dims_[axis];
+        lower |= static_cast<unsigned>(ends.lower[axis] != index) << axis;
         cell = cell * dims_[axis] + index;
       }
-      if (exists) use(static_cast<std::uint64_t>(cell));
+      if (exists)
+        use(static_cast<std::uint64_t>(cell),
+            CellEdges<D, Method::hull>::slot(lower, lower | ends.direction));
     }
   }
 
-  // The slots of the simplices of a cell, D each, in the order of the table.
-  std::span<const std::uint8_t> simplices(std::uint64_t cell) const {
-    const std::uint32_t code = code_of(cell);
+  // The code of a cell in the table.
+  virtual std::uint32_t code_of(std::uint64_t cell) const = 0;
+  // The slots of the simplices of a code, D each, in the order of the table.
+  std::span<const std::uint8_t> simplices(std::uint32_t code) const {
     return std::span(table_.corners).subspan(table_.first[code], table_.first[code + 1] - table_.first[code]);
   }
-  GridEdge edge(std::uint64_t cell, unsigned slot) const {
+  GridEdge edge(std::uint64_t cell, unsigned slot) const { return edge_of_origin(cell) + edge_offset_[slot]; }
+  // What the edges at the slots of a cell have in common.
+  GridEdge edge_of_origin(std::uint64_t cell) const {
     const auto row_length = static_cast<std::uint64_t>(dims_[0]);
-    return (cell / row_length << D) * row_length + cell % row_length + edge_offset_[slot];
+    return (cell / row_length << D) * row_length + cell % row_length;
   }
+  GridEdge edge_offset(unsigned slot) const { return edge_offset_[slot]; }
 
   // Whether the surface crosses the edge.
   bool crosses(GridEdge edge) const {
@@ -101,16 +109,15 @@ class SignedCells {
   }
 
  protected:
-  // Whether a sample is inside; the code of a cell in the table; of a sample of the lower step and the one
-  // above it with different signs, where the crossing lies, from 0 to 1.
+  // Whether a sample is inside; of a sample of the lower step and the one above it with different signs,
+  // where the crossing lies, from 0 to 1.
   virtual bool inside(const std::array<std::int64_t, D>& sample) const = 0;
-  virtual std::uint32_t code_of(std::uint64_t cell) const = 0;
   virtual double time_between(const std::array<std::int64_t, D>& lower) const = 0;
 
  private:
   const MarchTable<D>& table_;
   std::array<std::int64_t, D> dims_;
-  std::array<GridEdge, 256> edge_offset_{};
+  std::array<GridEdge, CellEdges<D, Method::hull>::slots> edge_offset_{};
 };
 
 // By the masks of whole steps.
@@ -119,7 +126,24 @@ class MaskedCells final : public SignedCells<D> {
  public:
   // `table`: of the method.
   MaskedCells(const MarchTable<D>& table, Method method, Crossings<D> crossings)
-      : SignedCells<D>(table, crossings.dims()), method_(method), crossings_(std::move(crossings)) {}
+      : SignedCells<D>(table, crossings.dims()), method_(method), crossings_(std::move(crossings)) {
+    for (unsigned place = 0; place < row_offset_.size(); ++place)
+      for (int axis = D - 2; axis > 0; --axis)
+        row_offset_[place] =
+            row_offset_[place] * static_cast<std::size_t>(this->dims()[axis]) + (place >> (axis - 1) & 1);
+  }
+
+  std::uint32_t code_of(std::uint64_t cell) const override {
+    const auto row_length = static_cast<std::uint64_t>(this->dims()[0]);
+    const std::uint64_t row = cell / row_length, x = cell % row_length;
+    std::uint32_t code = 0;
+    for (unsigned place = 0; place < 1u << (D - 1); ++place) { // in a column: bit j stands for axis j + 1
+      const StepMask& step = place >> (D - 2) & 1 ? crossings_.upper() : crossings_.lower();
+      const unsigned pair = pair_at(step.row(row + row_offset_[place % row_offset_.size()]), x);
+      code |= ((pair & 1) | (pair >> 1) << (1u << (D - 1))) << place;
+    }
+    return code;
+  }
 
   std::unique_ptr<Landmarks<D>> landmarks(double moment, Direction direction, bool of_rim) const override {
     return std::make_unique<Landmarks<D>>(crossings_, method_, moment, direction, of_rim);
@@ -139,23 +163,9 @@ class MaskedCells final : public SignedCells<D> {
   double time_between(const std::array<std::int64_t, D>& lower) const override {
     return crossings_.time_at(row_in_step(lower), static_cast<std::size_t>(lower[0]));
   }
-  std::uint32_t code_of(std::uint64_t cell) const override {
-    const auto row_length = static_cast<std::uint64_t>(this->dims()[0]);
-    const std::uint64_t row = cell / row_length, x = cell % row_length;
-    std::uint32_t code = 0;
-    for (unsigned place = 0; place < 1u << (D - 1); ++place) { // in a column: bit j stands for axis j + 1
-      std::uint64_t offset = 0;
-      for (int axis = D - 2; axis > 0; --axis)
-        offset = offset * static_cast<std::uint64_t>(this->dims()[axis]) + (place >> (axis - 1) & 1);
-      const StepMask& step = place >> (D - 2) & 1 ? crossings_.upper() : crossings_.lower();
-      code |= static_cast<std::uint32_t>(step.inside(row + offset, x)) << place;
-      code |= static_cast<std::uint32_t>(step.inside(row + offset, x + 1)) << (place + (1u << (D - 1)));
-    }
-    return code;
-  }
-
   Method method_;
   Crossings<D> crossings_;
+  std::array<std::size_t, 1u << (D - 2)> row_offset_{}; // of the rows of a cell, by their place in a column
 };
 
 } // namespace hyperiso::track_detail

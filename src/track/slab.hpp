@@ -6,7 +6,6 @@
 #include "track/signed_cells.hpp"
 
 #include <algorithm>
-#include <bitset>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -113,6 +112,11 @@ class Slab {
     }
     return {first, last};
   }
+  bool has_corner(SimplexNumber number, Vertex vertex) const {
+    bool found = false;
+    for (const Vertex corner : simplex(number)) found |= corner == vertex;
+    return found;
+  }
   // The simplices around a vertex, in the order of their cells.
   std::span<const SimplexNumber> star(Vertex vertex) {
     if (!cells_) return stars_.of(vertex);
@@ -125,12 +129,8 @@ class Slab {
   // Whether a triangle of M is one where M ends: at a wall of the domain, or where samples are missing.
   bool is_on_boundary(const std::array<Vertex, 3>& triangle) {
     if (cells_) return walls_[triangle[0]] & walls_[triangle[1]] & walls_[triangle[2]];
-    const auto has = [&](SimplexNumber number, Vertex vertex) {
-      const auto corners = simplex(number);
-      return std::ranges::find(corners, vertex) != corners.end();
-    };
     return std::ranges::count_if(star(triangle[0]), [&](SimplexNumber number) {
-             return has(number, triangle[1]) && has(number, triangle[2]);
+             return has_corner(number, triangle[1]) && has_corner(number, triangle[2]);
            }) == 1;
   }
 
@@ -168,32 +168,44 @@ class Slab {
     }
     return number;
   }
-  // The first simplex of a cell and how many it has.
-  std::pair<SimplexNumber, std::size_t> unfold(std::uint64_t cell) {
-    const auto slots = cells_->simplices(cell); // D for each
-    const auto [first, is_new] = first_of_cell_.insert(cell, static_cast<std::uint32_t>(simplex_count()));
+  struct UnfoldedCell {
+    SimplexNumber first; // of its simplices
+    std::uint32_t code;
+  };
+  UnfoldedCell unfold(std::uint64_t cell) {
+    const auto [number, is_new] =
+        number_of_cell_.insert(cell, static_cast<std::uint32_t>(unfolded_cells_.size()));
     if (is_new) {
+      unfolded_cells_.push_back({static_cast<SimplexNumber>(simplex_count()), cells_->code_of(cell)});
+      const auto slots = cells_->simplices(unfolded_cells_.back().code);
       cell_of_.resize(cell_of_.size() + slots.size() / C, cell);
-      std::array<Vertex, 256> vertex; // of each slot
-      std::bitset<256> known;
-      for (const std::uint8_t slot : slots) {
-        if (!known[slot]) vertex[slot] = vertex_on(cells_->edge(cell, slot)), known[slot] = true;
-        corners_.push_back(vertex[slot]);
+      const std::size_t first_corner = corners_.size();
+      corners_.resize(first_corner + slots.size());
+      const GridEdge origin = cells_->edge_of_origin(cell);
+      std::array<Vertex, 32> vertex; // of each slot
+      std::uint32_t known = 0;
+      for (std::size_t i = 0; i < slots.size(); ++i) {
+        const unsigned slot = slots[i];
+        if (!(known >> slot & 1))
+          vertex[slot] = vertex_on(origin + cells_->edge_offset(slot)), known |= std::uint32_t{1} << slot;
+        corners_[first_corner + i] = vertex[slot];
       }
     }
-    return {first, slots.size() / C};
+    return unfolded_cells_[number];
   }
   void unfold_star(Vertex vertex) {
-    std::vector<SimplexNumber> star;
-    cells_->for_each_cell_around(edges_[vertex], [&](std::uint64_t cell) {
-      const auto [first, count] = unfold(cell);
-      for (auto number = first; number < first + count; ++number) {
-        const auto corners = simplex(number);
-        if (std::find(corners.begin(), corners.end(), vertex) != corners.end()) star.push_back(number);
+    found_.clear();
+    cells_->for_each_cell_around(edges_[vertex], [&](std::uint64_t cell, unsigned slot) {
+      const UnfoldedCell unfolded = unfold(cell);
+      const auto slots = cells_->simplices(unfolded.code);
+      for (std::size_t first = 0; first < slots.size(); first += C) {
+        bool has_slot = false;
+        for (std::size_t i = 0; i < C; ++i) has_slot |= slots[first + i] == slot;
+        if (has_slot) found_.push_back(unfolded.first + static_cast<SimplexNumber>(first / C));
       }
     });
     if (unfolded_stars_.size() < edges_.size()) unfolded_stars_.resize(edges_.size());
-    unfolded_stars_[vertex] = std::move(star); // which stays where it is when others come
+    unfolded_stars_[vertex] = found_; // stays where it is when others come
   }
 
   std::vector<GridEdge> edges_;
@@ -202,10 +214,12 @@ class Slab {
   Stars stars_;
 
   std::unique_ptr<Cells> cells_;
-  NumberMap vertex_on_edge_, first_of_cell_;
+  NumberMap vertex_on_edge_, number_of_cell_;
+  std::vector<UnfoldedCell> unfolded_cells_;
   std::vector<std::uint8_t> walls_;                        // of each vertex
   std::vector<std::uint64_t> cell_of_;                     // each simplex
   std::vector<std::vector<SimplexNumber>> unfolded_stars_; // empty where not asked for
+  std::vector<SimplexNumber> found_;                       // of the star that is unfolded
 };
 
 // Decodes grid edges of a slab and knows its samples.

@@ -43,10 +43,8 @@ struct PartsOfSlice : Slice<C> {
   // Calls use(part) for the parts around an edge that crosses the slice.
   template <class Use>
   void for_each_around(Vertex before, Vertex after, Use&& use) const {
-    for (const SimplexNumber simplex : this->slab.star(before)) {
-      const auto corners = this->slab.simplex(simplex);
-      if (std::find(corners.begin(), corners.end(), after) != corners.end()) use(simplex);
-    }
+    for (const SimplexNumber simplex : this->slab.star(before))
+      if (this->slab.has_corner(simplex, after)) use(simplex);
   }
 };
 
@@ -62,8 +60,8 @@ struct PartsOfRims : Slice<4> {
   template <class Use>
   void for_each_around(Vertex before, Vertex after, Use&& use) const {
     for (const SimplexNumber simplex : slab.star(before)) {
+      if (!slab.has_corner(simplex, after)) continue;
       const auto corners = slab.simplex(simplex);
-      if (std::ranges::find(corners, after) == corners.end()) continue;
       for (std::uint32_t left_out = 0; left_out < 4; ++left_out)
         if (corners[left_out] != before && corners[left_out] != after)
           if (const std::uint32_t part = 4 * simplex + left_out; slab.is_on_boundary(triangle(part)))

@@ -52,4 +52,10 @@ class StepMask {
   bool has_missing_ = false;
 };
 
+// The bits of a sample of a row and of the one behind it.
+inline unsigned pair_at(const std::uint64_t* row, std::size_t x) {
+  const std::uint64_t low = row[x / 64] >> (x % 64);
+  return static_cast<unsigned>((x % 64 == 63 ? low | row[x / 64 + 1] << 1 : low) & 3);
+}
+
 } // namespace hyperiso::track_detail
