@@ -54,7 +54,10 @@ class Landmarks {
       const std::uint64_t joined = inside_at(row, word) ^ outside_is_joined;
       return (changed & ~joined) | (of_rim ? within(row, word) : 0);
     };
-    regions_.emplace(in_space(dims_), inside_at, left_out);
+    const auto is_uniform = [&](std::size_t row) {
+      return !of_rim && !crossings.any(row) && lower.uniform(row) != 1;
+    };
+    regions_.emplace(in_space(dims_), is_uniform, inside_at, left_out);
   }
 
   // Of the place where the slice passes the edge of the surface between its vertices on two edges of the

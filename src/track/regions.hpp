@@ -60,11 +60,11 @@ class Regions {
     unite(reaches(method));
   }
   // Connected along the edges of the grid. `inside`, `missing`: words of the masks of these, by the row and
-  // the number of the word in it.
-  template <class Inside, class Missing>
-  Regions(const std::array<std::int64_t, D>& dims, Inside&& inside, Missing&& missing)
+  // the number of the word in it; `is_uniform(row)`: whether a row is known to be all inside or all outside.
+  template <class Uniform, class Inside, class Missing>
+  Regions(const std::array<std::int64_t, D>& dims, Uniform&& is_uniform, Inside&& inside, Missing&& missing)
       : dims_(dims), has_missing_(true) {
-    find_bands(never, inside, missing);
+    find_bands(is_uniform, inside, missing);
     unite(reaches_along_edges());
   }
 
@@ -107,7 +107,6 @@ class Regions {
     };
   }
 
-  // `is_uniform(row)`: whether a row is known to be all inside or all outside.
   template <class Uniform, class Inside, class Missing>
   void find_bands(Uniform&& is_uniform, Inside&& inside, Missing&& missing) {
     std::size_t planes = 1, row = 0;

@@ -1,6 +1,7 @@
 #pragma once
 // Which samples of a step are inside, a bit each.
 
+#include "core/parallel.hpp"
 #include "extract/kernels.hpp"
 
 namespace hyperiso::track_detail {
@@ -8,32 +9,25 @@ namespace hyperiso::track_detail {
 // Rows along axis 0, of whole words; the bits behind the last sample are 0.
 class StepMask {
  public:
-  template <class T, int S> // S: axes of space
-  StepMask(const FieldView<const T, S>& step, double isovalue, Inside inside) {
-    const auto dims = step.dims();
-    const InsideTest test = inside_test<T>(isovalue, inside);
-    const RowKernels kernels = row_kernels(sample_type_of<T>(), best_instructions());
-    words_ = static_cast<std::size_t>((dims[0] + 63) / 64);
-    for (int axis = 1; axis < S; ++axis) rows_ *= static_cast<std::size_t>(dims[axis]);
+  // S: axes of space. Small steps are passed over by fewer than `threads`.
+  template <class T, int S>
+  StepMask(const FieldView<const T, S>& step, double isovalue, Inside inside, int threads = 1)
+      : words_(static_cast<std::size_t>((step.dims()[0] + 63) / 64)) {
+    for (int axis = 1; axis < S; ++axis) rows_ *= static_cast<std::size_t>(step.dims()[axis]);
     bits_.resize(rows_ * words_);
     uniform_.resize(rows_);
-    const auto plane_rows = static_cast<std::size_t>(dims[1]);
-    std::vector<T> gathered(step.strides[0] == 1 ? 0 : static_cast<std::size_t>(dims[0] * dims[1]));
-    std::array<std::int64_t, S> index{};
-    for (std::size_t row = 0; row < rows_;
-         row += plane_rows) { // rows of one index along all axes but 0 and 1
-      SampleRows rows{reinterpret_cast<const std::byte*>(&step.at(index)), dims[1],
-                      step.strides[1] * static_cast<std::int64_t>(sizeof(T)), dims[0]};
-      if (!gathered.empty()) {
-        for (std::int64_t i = 0; i < dims[1]; ++i)
-          kernels.gather(rows.first + i * rows.bytes_apart, step.strides[0], dims[0],
-                         reinterpret_cast<std::byte*>(gathered.data() + i * dims[0]));
-        rows = {reinterpret_cast<const std::byte*>(gathered.data()), dims[1],
-                dims[0] * static_cast<std::int64_t>(sizeof(T)), dims[0]};
+    constexpr std::int64_t worth_a_thread = 1 << 19; // samples
+    const auto planes = rows_ / static_cast<std::size_t>(step.dims()[1]);
+    std::atomic<std::size_t> next_plane = 0;
+    std::atomic<bool> has_missing = false;
+    run_workers(std::clamp(static_cast<int>(step.grid.samples() / worth_a_thread), 1, threads), [&](int) {
+      PlanePass<T, S> pass(step, isovalue, inside);
+      for (std::size_t plane; (plane = next_plane++) < planes;) {
+        const std::size_t row = plane * static_cast<std::size_t>(step.dims()[1]);
+        if (pass.has_missing(plane, &bits_[row * words_], &uniform_[row])) has_missing = true;
       }
-      has_missing_ |= kernels.inside(rows, test, &bits_[row * words_], &uniform_[row]);
-      for (int axis = 2; axis < S && ++index[axis] == dims[axis]; ++axis) index[axis] = 0;
-    }
+    });
+    has_missing_ = has_missing;
   }
 
   bool has_missing() const { return has_missing_; }
@@ -46,6 +40,39 @@ class StepMask {
   bool inside(std::size_t row_number, std::size_t x) const { return row(row_number)[x / 64] >> (x % 64) & 1; }
 
  private:
+  // Passes over the rows of one index along all axes but 0 and 1.
+  template <class T, int S>
+  class PlanePass {
+   public:
+    PlanePass(const FieldView<const T, S>& step, double isovalue, Inside inside)
+        : step_(step), test_(inside_test<T>(isovalue, inside)),
+          kernels_(row_kernels(sample_type_of<T>(), best_instructions())),
+          gathered_(step.strides[0] == 1 ? 0 : static_cast<std::size_t>(step.dims()[0] * step.dims()[1])) {}
+
+    bool has_missing(std::size_t plane, std::uint64_t* bits, std::uint8_t* uniform) {
+      const auto dims = step_.dims();
+      std::array<std::int64_t, S> index{};
+      auto rest = static_cast<std::int64_t>(plane);
+      for (int axis = 2; axis < S; rest /= dims[axis++]) index[axis] = rest % dims[axis];
+      SampleRows rows{reinterpret_cast<const std::byte*>(&step_.at(index)), dims[1],
+                      step_.strides[1] * static_cast<std::int64_t>(sizeof(T)), dims[0]};
+      if (!gathered_.empty()) {
+        for (std::int64_t i = 0; i < dims[1]; ++i)
+          kernels_.gather(rows.first + i * rows.bytes_apart, step_.strides[0], dims[0],
+                          reinterpret_cast<std::byte*>(gathered_.data() + i * dims[0]));
+        rows = {reinterpret_cast<const std::byte*>(gathered_.data()), dims[1],
+                dims[0] * static_cast<std::int64_t>(sizeof(T)), dims[0]};
+      }
+      return kernels_.inside(rows, test_, bits, uniform);
+    }
+
+   private:
+    const FieldView<const T, S>& step_;
+    InsideTest test_;
+    RowKernels kernels_;
+    std::vector<T> gathered_;
+  };
+
   std::vector<std::uint64_t> bits_;
   std::vector<std::uint8_t> uniform_;
   std::size_t rows_ = 1, words_ = 0;

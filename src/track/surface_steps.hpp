@@ -97,7 +97,7 @@ class SurfaceSteps {
   int threads() const { return worker_count(options_.threads); }
 
   std::shared_ptr<const StepMask> mask_of(const FieldView<const T, D - 1>& samples) const {
-    return std::make_shared<const StepMask>(samples, isovalue_, options_.inside);
+    return std::make_shared<const StepMask>(samples, isovalue_, options_.inside, threads());
   }
   Status add_surface(const FieldView<const T, D - 1>& samples, Step& step) {
     ExtractOptions options = options_;
