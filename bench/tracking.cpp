@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <benchmark/benchmark.h>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -37,7 +38,14 @@ Field make_field(const TrackingWorkload& workload, double& isovalue) {
     return require(require(open_field(files), workload.title)->read(), workload.title);
   }
   isovalue = workload.isovalue.value_or(sample_isovalue(workload.sample, options));
-  return require(make_sample(workload.sample, options), workload.title);
+  Field field = require(make_sample(workload.sample, options), workload.title);
+  if (!workload.percent) return field;
+  const auto* samples = reinterpret_cast<const float*>(field.samples.get());
+  auto rounded = std::make_shared<std::vector<float>>(samples, samples + field.info.samples());
+  for (float& sample : *rounded) sample = std::round(100 * sample);
+  isovalue = std::round(100 * isovalue);
+  field.samples = {rounded, reinterpret_cast<const std::byte*>(rounded->data())};
+  return field;
 }
 
 // A cell at the middle step that the surface passes.

@@ -16,7 +16,8 @@ struct TrackingWorkload {
   int blobs = 2;
   std::string files = {}; // a folder with a file for each step; the row is left out where it is missing
   std::optional<double> isovalue = {};
-  bool local = false; // the component through the surface's first cell at the middle step instead of all
+  bool percent = false; // samples are rounded to hundredths, so that many equal the isovalue
+  bool local = false;   // the component through the surface's first cell at the middle step instead of all
 };
 
 // Adds the workload to the second table, on one thread and on all. Returns 0.

@@ -229,15 +229,40 @@ std::multiset<std::string> tracked_history(const TrackingGraph& graph) {
 }
 
 template <int D>
+void compare(const check::OwnedField<float, D>& field, const ExtractOptions& extraction) {
+  TrackOptions options;
+  options.extraction = extraction;
+  EXPECT_EQ(tracked_history(track_field(time_field<float, D>(field), 0, options)),
+            (brute_force_history<float, D>(field.view, extraction)));
+}
+template <int D>
 void compare(const std::array<std::int64_t, D>& dims, int range, unsigned seed, Inside inside = Inside::above,
              Method method = Method::hull) {
-  const auto field = check::random_field<float, D>(dims, range, seed);
-  TrackOptions options;
-  options.extraction.inside = inside;
-  options.extraction.method = method;
-  const auto graph = track_field(time_field<float, D>(field), 0, options);
-  EXPECT_EQ(tracked_history(graph), (brute_force_history<float, D>(field.view, options.extraction)))
-      << "seed " << seed << ", samples up to " << range;
+  SCOPED_TRACE("seed " + std::to_string(seed) + ", samples up to " + std::to_string(range));
+  ExtractOptions extraction;
+  extraction.inside = inside;
+  extraction.method = method;
+  compare<D>(check::random_field<float, D>(dims, range, seed), extraction);
+}
+// Waves, rounded to whole numbers: components of many vertices at a step, with ties at a part of them.
+template <int D>
+check::OwnedField<float, D> waves(const std::array<std::int64_t, D>& dims, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> number(-1, 1);
+  std::array<std::array<double, D + 1>, 6> waves;
+  for (auto& wave : waves)
+    for (double& entry : wave) entry = number(random);
+  const double height = 1 + 4 * std::abs(number(random));
+  return check::make_field<float, D>(unit_grid<D>(dims), [&](const auto& index) {
+    double sum = 0;
+    for (const auto& wave : waves) {
+      double phase = 5 * wave[D];
+      for (std::size_t axis = 0; axis < D; ++axis)
+        phase += 1.6 * wave[axis] * static_cast<double>(index[axis]);
+      sum += std::cos(phase);
+    }
+    return std::round(height * sum);
+  });
 }
 
 TEST(TrackBruteForce, ties_everywhere_in_2d) {
@@ -257,6 +282,27 @@ TEST(TrackBruteForce, equal_times_in_3d) {
 }
 TEST(TrackBruteForce, single_events_in_3d) {
   for (unsigned seed = 0; seed < 12; ++seed) compare<4>({3, 4, 3, 3}, 100000, seed, Inside::below);
+}
+
+// Ties that change nothing beside some that do.
+TEST(TrackBruteForce, smooth_fields_with_ties_in_2d) {
+  for (const Method method : {Method::hull, Method::simplicial})
+    for (unsigned seed = 0; seed < 40; ++seed) {
+      SCOPED_TRACE(seed);
+      ExtractOptions extraction;
+      extraction.method = method;
+      compare<3>(waves<3>({6, 5, 5}, seed), extraction);
+    }
+}
+// In the last three curves on walls pass close to ties that are not theirs.
+TEST(TrackBruteForce, smooth_fields_with_ties_in_3d) {
+  for (const Method method : {Method::hull, Method::simplicial})
+    for (const unsigned seed : {0u, 59u, 63u, 111u}) {
+      SCOPED_TRACE(seed);
+      ExtractOptions extraction;
+      extraction.method = method;
+      compare<4>(waves<4>({5, 5, 4, 3}, seed), extraction);
+    }
 }
 
 TEST(TrackBruteForce, simplicial) {

@@ -1,6 +1,7 @@
 #pragma once
 // A step, where two slabs meet: what its connected pieces are, and what happens at them.
 
+#include "track/link_test.hpp"
 #include "track/sweep.hpp"
 
 namespace hyperiso::track_detail {
@@ -132,6 +133,8 @@ class Level {
     if (lower_) unite_in(*lower_, 1.0, lower_places_, united);
     if (upper_) unite_in(*upper_, 0.0, upper_places_, united);
     number_components(united);
+    find_plain();
+    if (std::ranges::find(plain_, false) != plain_.end()) find_uneven();
     if (lower_) strands_in_ = strands_of(*lower_, 1.0, lower_places_);
     if (upper_) strands_out_ = strands_of(*upper_, 0.0, upper_places_);
   }
@@ -154,7 +157,7 @@ class Level {
 
   // A vertex within the step is in both slabs, unless cells without data are on one side of it.
   void unite_across_slabs(UnionFind& united) {
-    paired_.assign(vertex_count_, false);
+    twin_.assign(vertex_count_, none);
     if (!lower_ || !upper_) return;
     Slab<C>& below = lower_->slab;
     for (Vertex vertex = 0; vertex < lower_places_.size(); ++vertex) {
@@ -162,8 +165,34 @@ class Level {
       const auto other = upper_->slab.find(below.edge(vertex) - below.step_offset);
       if (!other) continue;
       united.unite(lower_places_[vertex], upper_places_[*other]);
-      paired_[lower_places_[vertex]] = paired_[upper_places_[*other]] = true;
+      twin_[lower_places_[vertex]] = upper_places_[*other];
+      twin_[upper_places_[*other]] = lower_places_[vertex];
     }
+  }
+
+  // Between simplices whose corners at the step are all in both slabs, none of them next to one that is not,
+  // M passes straight through the step: what it has there before and after is alike, piece by piece.
+  void find_uneven() {
+    uneven_.assign(vertex_count_, has_missing());
+    if (!lower_ || !upper_ || has_missing()) return;
+    mark_next_to_unpaired(lower_->slab, 1.0, lower_places_);
+    mark_next_to_unpaired(upper_->slab, 0.0, upper_places_);
+    for (std::size_t place = 0; place < vertex_count_; ++place)
+      if (twin_[place] != none && uneven_[place]) uneven_[twin_[place]] = true;
+  }
+  void mark_next_to_unpaired(const Slab<C>& slab, double time, const std::vector<std::uint32_t>& places) {
+    for (SimplexNumber number = 0; number < slab.simplex_count(); ++number) {
+      const auto corners = slab.simplex(number);
+      const auto at_step = [&](Vertex vertex) { return slab.time(vertex) == time; };
+      if (std::none_of(corners.begin(), corners.end(),
+                       [&](Vertex vertex) { return at_step(vertex) && twin_[places[vertex]] == none; }))
+        continue;
+      for (const Vertex vertex : corners)
+        if (at_step(vertex)) uneven_[places[vertex]] = true;
+    }
+  }
+  bool has_missing() const {
+    return (lower_ && lower_->slab.has_missing) || (upper_ && upper_->slab.has_missing);
   }
 
   static void unite_in(const Sweep<C>& sweep, double time, const std::vector<std::uint32_t>& places,
@@ -187,12 +216,27 @@ class Level {
       if (root == place) {
         component_[place] = outcomes_.size();
         outcomes_.emplace_back();
-        plain_.push_back(lower_ && upper_ && !lower_->slab.has_missing && !upper_->slab.has_missing);
+        plain_.push_back(lower_ && upper_ && !has_missing());
       } else {
         component_[place] = component_[root];
       }
-      if (!paired_[place]) plain_[component_[place]] = false;
     }
+  }
+
+  // The vertices that only one slab has, passed one after the other in the order of time, those of the
+  // surface at the step in between: a component where nothing happens at any of them is plain.
+  void find_plain() {
+    if (!lower_ || !upper_ || has_missing()) return;
+    const auto check = [&](Slab<C>& slab, const std::vector<std::uint32_t>& places) {
+      LinkTest<C> link;
+      for (Vertex vertex = 0; vertex < places.size(); ++vertex) {
+        const std::uint32_t place = places[vertex];
+        if (place == none || twin_[place] != none || !plain_[component_[place]]) continue;
+        plain_[component_[place]] = link.is_regular(slab, vertex);
+      }
+    };
+    check(lower_->slab, lower_places_);
+    check(upper_->slab, upper_places_);
   }
 
   std::vector<std::vector<Vertex>> vertices_of_special(const std::vector<std::uint32_t>& places) const {
@@ -240,18 +284,23 @@ class Level {
     ChangeWithin change;
     if (!type) {
       change = around.change(in.size() == 1 && out.size() == 1);
-      type = type_of_node(in.size(), out.size(), around.all_places.all_on_wall(), change, has_genus());
+      const bool on_wall = (in.empty() || out.empty()) && around.all_places().all_on_wall();
+      type = type_of_node(in.size(), out.size(), on_wall, change, has_genus());
     }
+    Outcome outcome;
+    if (!around.has_surface_at_step()) outcome.middle = around.all_places().mean();
     if (!type) {
       upper_->set_arc(out[0], in[0]);
-      return {in[0], -1, around.all_places.mean()};
+      outcome.arc = in[0];
+      return outcome;
     }
     const bool whole = !lower_ || !upper_ || in.empty() || out.empty();
     TrackingEvent& event = graph.add_event(*type, time, std::move(in), out.size());
-    event.position = whole ? around.all_places.mean() : around.critical_position();
+    event.position = whole ? around.all_places().mean() : around.critical_position();
     event.delta_euler = change.euler;
     for (std::size_t i = 0; i < out.size(); ++i) upper_->set_arc(out[i], event.arcs_out[i]);
-    return {-1, graph.last_event(), around.all_places.mean()};
+    outcome.event = graph.last_event();
+    return outcome;
   }
 
   // The simplices around one component, for those few where something may happen.
@@ -260,41 +309,66 @@ class Level {
     Surroundings(const Level& level, std::size_t component) : level_(level) {
       if (level.lower_) lower_vertices_ = level.lower_vertices_[component];
       if (level.upper_) upper_vertices_ = level.upper_vertices_[component];
-      for (const Vertex vertex : upper_vertices_) all_places.add(place_in_upper(vertex));
-      for (const Vertex vertex : lower_vertices_)
-        if (!upper_twin(vertex)) all_places.add(place_in_lower(vertex));
     }
 
-    PlaceSum all_places;
+    PlaceSum all_places() const {
+      PlaceSum places;
+      for (const Vertex vertex : upper_vertices_) places.add(place_in_upper(vertex));
+      for (const Vertex vertex : lower_vertices_)
+        if (!upper_twin(vertex)) places.add(place_in_lower(vertex));
+      return places;
+    }
+    bool has_surface_at_step() const {
+      const auto in_step = [](Slab<C>& slab) {
+        return [&slab](Vertex vertex) { return slab.in_step(vertex); };
+      };
+      return (level_.lower_ && std::ranges::any_of(lower_vertices_, in_step(level_.lower_->slab))) ||
+             (level_.upper_ && std::ranges::any_of(upper_vertices_, in_step(level_.upper_->slab)));
+    }
 
+    // Requires both slabs. Faces of simplices of which all corners at the step lie where it is even add as
+    // much before as after, and so do boundary curves that pass only there: they are left out.
     ChangeWithin change(bool count_rims) const {
-      const auto any = [](Vertex) { return true; };
+      const auto is_uneven_below = [&](Vertex vertex) {
+        return level_.uneven_[level_.lower_places_[vertex]];
+      };
+      const auto is_uneven_above = [&](Vertex vertex) {
+        return level_.uneven_[level_.upper_places_[vertex]];
+      };
       SideFinder<C> sides;
-      const Side before = sides.find(level_.lower_->slab, star(level_.lower_->slab, lower_vertices_), 1,
-                                     Direction::before, any);
-      const Side after = sides.find(level_.upper_->slab, star(level_.upper_->slab, upper_vertices_), 0,
-                                    Direction::after, any);
+      const Side before =
+          sides.find(level_.lower_->slab, star(level_.lower_->slab, lower_vertices_, is_uneven_below), 1,
+                     Direction::before, is_uneven_below);
+      const Side after =
+          sides.find(level_.upper_->slab, star(level_.upper_->slab, upper_vertices_, is_uneven_above), 0,
+                     Direction::after, is_uneven_above);
       ChangeWithin change{after.euler - before.euler, 0};
       if constexpr (C == 4)
         if (count_rims && level_.upper_->slab.has_rims())
-          change.rims = rims(after, Direction::after) - rims(before, Direction::before);
+          change.rims = rims(after, Direction::after, is_uneven_above) -
+                        rims(before, Direction::before, is_uneven_below);
       return change;
     }
 
-    // The mean of the vertices whose own links are critical, or of all if none is.
+    // The mean of the vertices whose own links are critical, or of all if none is. Requires both slabs.
     std::vector<double> critical_position() const {
       PlaceSum critical;
       for (const Vertex vertex : upper_vertices_)
-        if (is_critical(lower_twin(vertex), vertex)) critical.add(place_in_upper(vertex));
+        if (level_.uneven_[level_.upper_places_[vertex]] && is_critical(lower_twin(vertex), vertex))
+          critical.add(place_in_upper(vertex));
       for (const Vertex vertex : lower_vertices_)
         if (!upper_twin(vertex) && is_critical(vertex, std::nullopt)) critical.add(place_in_lower(vertex));
-      return critical.empty() ? all_places.mean() : critical.mean();
+      return critical.empty() ? all_places().mean() : critical.mean();
     }
 
    private:
-    static std::vector<SimplexNumber> star(Slab<C>& slab, std::span<const Vertex> vertices) {
+    // Of those vertices that are wanted.
+    template <class IsWanted>
+    static std::vector<SimplexNumber> star(Slab<C>& slab, std::span<const Vertex> vertices,
+                                           IsWanted&& is_wanted) {
       std::vector<SimplexNumber> star;
       for (const Vertex vertex : vertices) {
+        if (!is_wanted(vertex)) continue;
         const auto around = slab.star(vertex);
         star.insert(star.end(), around.begin(), around.end());
       }
@@ -343,13 +417,18 @@ class Level {
       return before.components.size() != 1 || after.components.size() != 1 || before.euler != after.euler;
     }
 
-    std::int64_t rims(const Side& side, Direction direction) const {
+    // Of curves that pass triangles with a corner that is wanted.
+    template <class IsWanted>
+    std::int64_t rims(const Side& side, Direction direction, IsWanted&& is_wanted) const {
       std::vector<SimplexNumber> simplices;
       for (const auto& component : side.components)
         simplices.insert(simplices.end(), component.begin(), component.end());
       const bool before = direction == Direction::before;
-      return count_rims({(before ? level_.lower_ : level_.upper_)->slab, before ? 1.0 : 0.0, direction},
-                        simplices);
+      Sweep<C>* const sweep = before ? level_.lower_ : level_.upper_;
+      const double moment = before ? 1 : 0;
+      return count_rims({sweep->slab, moment, direction}, simplices, [&](Vertex vertex) {
+        return sweep->slab.time(vertex) == moment && is_wanted(vertex);
+      });
     }
 
     const Level& level_;
@@ -360,9 +439,10 @@ class Level {
   std::shared_ptr<const StepPieces> pieces_;               // if they are the components
   std::vector<std::uint32_t> lower_places_, upper_places_; // of each vertex of the slabs, or none
   std::size_t vertex_count_ = 0;                           // of both, = places
-  std::vector<bool> paired_;                               // places: the vertex is in both slabs
-  std::vector<std::size_t> component_;                     // of each place
-  std::vector<bool> plain_; // components: the same on both sides, so that nothing can happen there
+  std::vector<std::uint32_t> twin_;    // the place of the same vertex in the other slab, or none
+  std::vector<bool> uneven_;           // places: what is before and after may differ there
+  std::vector<std::size_t> component_; // of each place
+  std::vector<bool> plain_;            // components: the same on both sides, so that nothing can happen there
   std::vector<std::vector<Vertex>> lower_vertices_, upper_vertices_; // of each component that is not plain
   std::vector<std::vector<std::uint64_t>> strands_in_, strands_out_; // of each component
   std::vector<Outcome> outcomes_;

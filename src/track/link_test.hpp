@@ -17,35 +17,64 @@ class LinkTest {
   bool is_regular(Slab<C>& slab, Vertex vertex) {
     if constexpr (C > 4) return is_regular_in_volume(slab, vertex);
     std::uint64_t below = 0, above = 0;
-    int count = 0, simplices_below = 0, simplices_above = 0;
+    int simplices_below = 0, simplices_above = 0;
+    const bool fits = pass_star(
+        slab, vertex,
+        [&](Vertex other, std::uint64_t bit) { (slab.is_earlier(other, vertex) ? below : above) |= bit; },
+        [&](std::uint64_t corners) {
+          simplices_below += (corners & above) == 0;
+          simplices_above += (corners & below) == 0;
+        });
+    return fits && is_connected(below) && is_connected(above) &&
+           euler(below, simplices_below) == euler(above, simplices_above);
+  }
+
+  // Whether what M has next to a vertex just after its time is in one piece, or nothing. False also if the
+  // link is too large, or M of more dimensions.
+  bool is_in_one_piece_after(Slab<C>& slab, Vertex vertex) {
+    if constexpr (C > 4) return false;
+    std::uint64_t after = 0;
+    const bool fits = pass_star(
+        slab, vertex,
+        [&](Vertex other, std::uint64_t bit) { after |= slab.time(other) > slab.time(vertex) ? bit : 0; },
+        [](std::uint64_t) {});
+    return fits && (after == 0 || is_connected(after));
+  }
+
+ private:
+  // Numbers the vertices of the link, as bits, and notes which share a simplex: use_vertex(vertex, bit) for
+  // each of them, use_simplex(bits) for each simplex after its vertices. False if they are more than 64.
+  template <class UseVertex, class UseSimplex>
+  bool pass_star(Slab<C>& slab, Vertex vertex, UseVertex&& use_vertex, UseSimplex&& use_simplex) {
+    int count = 0;
     const auto star = slab.star(vertex);
-    if (seen_from_.size() < slab.vertex_count()) {
-      seen_from_.resize(slab.vertex_count(), UINT32_MAX);
-      number_.resize(slab.vertex_count());
-    }
+    begin_star(slab);
     for (const SimplexNumber simplex : star) {
       std::uint64_t bits = 0;
       for (const Vertex other : slab.simplex(simplex)) {
         if (other == vertex) continue;
-        if (seen_from_[other] != vertex) {
+        if (seen_in_[other] != star_) {
           if (count == 64) return false;
-          seen_from_[other] = vertex;
+          seen_in_[other] = star_;
           number_[other] = static_cast<std::uint8_t>(count);
           neighbours_[static_cast<std::size_t>(count)] = 0;
-          (slab.is_earlier(other, vertex) ? below : above) |= std::uint64_t{1} << count++;
+          use_vertex(other, std::uint64_t{1} << count++);
         }
         bits |= std::uint64_t{1} << number_[other];
       }
       for (std::uint64_t rest = bits; rest != 0; rest &= rest - 1)
         neighbours_[static_cast<std::size_t>(std::countr_zero(rest))] |= bits;
-      simplices_below += (bits & above) == 0;
-      simplices_above += (bits & below) == 0;
+      use_simplex(bits);
     }
-    return is_connected(below) && is_connected(above) &&
-           euler(below, simplices_below) == euler(above, simplices_above);
+    return true;
+  }
+  void begin_star(const Slab<C>& slab) {
+    ++star_;
+    if (seen_in_.size() >= slab.vertex_count()) return;
+    seen_in_.resize(slab.vertex_count());
+    number_.resize(slab.vertex_count());
   }
 
- private:
   bool is_connected(std::uint64_t vertices) const {
     std::uint64_t reached = vertices & -vertices;
     for (std::uint64_t next = reached; next != 0;) {
@@ -116,10 +145,7 @@ class LinkTest {
 
   // For 4-simplices. False also if the link has more than 256 vertices.
   bool is_regular_in_volume(Slab<C>& slab, Vertex vertex) {
-    if (seen_from_.size() < slab.vertex_count()) {
-      seen_from_.resize(slab.vertex_count(), UINT32_MAX);
-      number_.resize(slab.vertex_count());
-    }
+    begin_star(slab);
     below_.clear();
     above_.clear();
     for (const SimplexNumber simplex : slab.star(vertex)) {
@@ -128,26 +154,35 @@ class LinkTest {
       for (const Vertex other : slab.simplex(simplex)) {
         if (other == vertex) continue;
         const bool earlier = slab.is_earlier(other, vertex);
-        if (seen_from_[other] != vertex) {
+        if (seen_in_[other] != star_) {
           const int count = below_.vertices + above_.vertices;
           if (count == 256) return false;
-          seen_from_[other] = vertex;
+          seen_in_[other] = star_;
           number_[other] = static_cast<std::uint8_t>(count);
           (earlier ? below_ : above_).add_vertex(number_[other]);
         }
-        (earlier ? low[lows++] : high[highs++]) = number_[other];
+        if (earlier)
+          insert(number_[other], low, lows);
+        else
+          insert(number_[other], high, highs);
       }
-      std::sort(low.begin(), low.begin() + static_cast<std::ptrdiff_t>(lows));
-      std::sort(high.begin(), high.begin() + static_cast<std::ptrdiff_t>(highs));
       below_.add(low, lows);
       above_.add(high, highs);
     }
     return below_.components == 1 && above_.components == 1 && below_.euler() == above_.euler();
   }
 
+  // Into numbers that ascend.
+  static void insert(std::uint8_t number, std::array<std::uint8_t, C>& ascending, std::size_t& size) {
+    std::size_t place = size++;
+    for (; place > 0 && ascending[place - 1] > number; --place) ascending[place] = ascending[place - 1];
+    ascending[place] = number;
+  }
+
   Part below_, above_;
-  std::vector<std::uint8_t> number_; // of each vertex of the slab in the link
-  std::vector<Vertex> seen_from_;
+  std::vector<std::uint8_t> number_;           // of each vertex of the slab in the link
+  std::vector<std::uint32_t> seen_in_;         // the last star that each vertex was met in
+  std::uint32_t star_ = 0;                     // how many were passed
   std::array<std::uint64_t, 64> neighbours_{}; // of each vertex of the link, itself included
 };
 

@@ -83,9 +83,12 @@ class Slab {
 
   GridEdge edge(Vertex vertex) const { return edges_[vertex]; }
   double time(Vertex vertex) const { return times_[vertex]; }
-  // The order in which vertices are passed: by time, then edge.
+  // The order in which vertices are passed: by time, then edge; what a step has comes before all else at the
+  // lower step and after all else at the upper one.
   bool is_earlier(Vertex a, Vertex b) const {
-    return times_[a] < times_[b] || (times_[a] == times_[b] && edges_[a] < edges_[b]);
+    if (times_[a] != times_[b]) return times_[a] < times_[b];
+    if ((times_[a] == 0 || times_[a] == 1) && in_step(a) != in_step(b)) return in_step(a) == (times_[a] == 0);
+    return edges_[a] < edges_[b];
   }
   // Whether the edge of the vertex lies within a step: such vertices are those of the surface at that step.
   bool in_step(Vertex vertex) const { return !(edges_[vertex] / row_length >> (C - 1) & 1); }

@@ -79,12 +79,9 @@ struct PartsOfRims : Slice<4> {
     }
   }
 
- private:
-  using Triangle = std::array<Vertex, 3>;
-
-  Triangle triangle(std::uint32_t part) const {
+  std::array<Vertex, 3> triangle(std::uint32_t part) const {
     const auto corners = slab.simplex(part / 4);
-    Triangle result;
+    std::array<Vertex, 3> result;
     for (std::size_t corner = 0, size = 0; corner < 4; ++corner)
       if (corner != part % 4) result[size++] = corners[corner];
     return result;
@@ -168,12 +165,17 @@ class PieceSearch {
   std::uint32_t search_ = 0;
 };
 
-// The number of boundary curves of a slice with a point in one of the simplices, all of which meet it.
-inline std::int64_t count_rims(const Slice<4>& slice, std::span<const SimplexNumber> simplices) {
+// The number of boundary curves of a slice that pass a triangle of one of the simplices, all of which meet
+// it, with a corner that `is_wanted`.
+template <class IsWanted>
+std::int64_t count_rims(const Slice<4>& slice, std::span<const SimplexNumber> simplices,
+                        IsWanted&& is_wanted) {
   const PartsOfRims rims{slice};
   std::vector<std::vector<std::uint32_t>> seeds;
   for (const SimplexNumber simplex : simplices)
-    rims.for_each_part(simplex, [&](std::uint32_t part) { seeds.push_back({part}); });
+    rims.for_each_part(simplex, [&](std::uint32_t part) {
+      if (std::ranges::any_of(rims.triangle(part), is_wanted)) seeds.push_back({part});
+    });
   return seeds.empty() ? 0 : std::ssize(PieceSearch().find(rims, seeds));
 }
 

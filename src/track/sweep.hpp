@@ -109,7 +109,7 @@ class Sweep {
   // The strand of a vertex has its number; where its edges fall into several pieces, the others get new ones.
   void part_ways_at_lower_step() {
     for (Vertex vertex = 0; vertex < slab.vertex_count(); ++vertex) {
-      if (slab.time(vertex) != 0) continue;
+      if (slab.time(vertex) != 0 || link_.is_in_one_piece_after(slab, vertex)) continue;
       const Side after = sides_.find(slab, slab.star(vertex), 0, Direction::after,
                                      [&](Vertex other) { return other == vertex; });
       for (std::size_t piece = 1; piece < after.components.size(); ++piece) {
@@ -311,8 +311,9 @@ class Sweep {
         for (const auto& component : critical[number].after.components)
           after.insert(after.end(), component.begin(), component.end());
       }
-      return count_rims({slab, moment, Direction::after}, after) -
-             count_rims({slab, moment, Direction::before}, before);
+      const auto any = [](Vertex) { return true; };
+      return count_rims({slab, moment, Direction::after}, after, any) -
+             count_rims({slab, moment, Direction::before}, before, any);
     } else {
       return 0;
     }
