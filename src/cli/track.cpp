@@ -194,6 +194,11 @@ Command track_command(CLI::App& program) {
   app->get_option("INPUT")->required(false); // --select may name it
   options->tracking.add_to(*app);
   options->surface.add_to(*app);
+  app->remove_option(app->get_option("--cut")); // of a method that is not tracked with
+  app->get_option("--method")
+      ->description(
+          "how a cell is filled: hull (default: fewest simplices), component (the same, but an ambiguous "
+          "cell keeps the outside together; surfaces only) or simplicial (cuts of the Kuhn simplices)");
   app->add_option(
          "--seed", options->seeds,
          "follow only the component through the grid cell around this point, and its relatives; repeatable")
@@ -218,6 +223,11 @@ Command track_command(CLI::App& program) {
       ->group("Output");
   options->printing.add_to(*app);
   options->machine.add_to(*app);
+  app->get_option("--memory")
+      ->description(
+          "the most memory for two steps and their surfaces, for example 800M or 4G (K, M, G, T: powers of "
+          "1024). What is looked at between two steps comes on top: some hundred bytes for each cell that "
+          "an event or the search for its pieces comes to. Left out: 80 % of what is free");
   set_manual(
       *app,
       {{"track INPUT... --iso V [--track region] [-o FOLDER] [options]",
