@@ -223,8 +223,8 @@ Status VtkXml::locate(pugi::xml_node node, VtkArray& array) const {
   }
   if (format != "ascii" && format != "binary")
     return malformed(text("array \"", array.name, "\" has the format \"", format, "\" and no offset"));
-  if (const std::string_view placeholder = node.child_value(); !placeholder.empty()) {
-    const auto number = number_from<std::size_t>(placeholder);
+  if (const std::string_view number_of_text = node.child_value(); !number_of_text.empty()) {
+    const auto number = number_from<std::size_t>(number_of_text);
     if (!number || *number >= texts_.size())
       return malformed(text("array \"", array.name, "\" holds more than text"));
     array.content = texts_[*number];

@@ -185,6 +185,7 @@ class SampledCells final : public SignedCells<D> {
   double time_between(const std::array<std::int64_t, D>& lower) const override {
     return time_from(&slab_.at(lower));
   }
+
   FieldView<const T, D> slab_;
   double isovalue_;
   SignRule<T, true> above_;

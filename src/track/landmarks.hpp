@@ -67,13 +67,17 @@ class Landmarks {
     if (is_along_time(a)) std::swap(a, b);
     if (is_along_time(a)) return std::nullopt; // both are
     const auto ends = grid_edge_ends<D>(dims_, a);
-    const Sample p = in_space(ends.lower), q = in_space(ends.upper);
-    const bool spans_face = is_along_time(b) ? b == edge_along_time(p) || b == edge_along_time(q)
-                                             : b == a + step_offset() || a == b + step_offset();
+    const auto at_step = [&](std::array<std::int64_t, D> index, std::int64_t step, unsigned direction) {
+      index[space] = step;
+      return grid_edge<D>(dims_, index, direction);
+    };
+    const bool spans_face =
+        is_along_time(b) ? b == at_step(ends.lower, 1, along_time) || b == at_step(ends.upper, 1, along_time)
+                         : b == at_step(ends.upper, 1 - ends.upper[space], ends.direction);
     if (!spans_face) return std::nullopt;
 
     using Kind = typename Regions<space>::Kind;
-    Region at_inside = regions_->at(p), at_outside = regions_->at(q);
+    Region at_inside = regions_->at(in_space(ends.lower)), at_outside = regions_->at(in_space(ends.upper));
     if (regions_->kind(at_inside) != Kind::inside) std::swap(at_inside, at_outside);
     if (regions_->kind(at_inside) != Kind::inside || regions_->kind(at_outside) != Kind::outside)
       return std::nullopt;
@@ -81,26 +85,14 @@ class Landmarks {
   }
 
  private:
-  using Sample = std::array<std::int64_t, space>;
+  static constexpr unsigned along_time = 1u << space; // a direction
 
-  static Sample in_space(const std::array<std::int64_t, D>& index) {
-    Sample result;
+  static std::array<std::int64_t, space> in_space(const std::array<std::int64_t, D>& index) {
+    std::array<std::int64_t, space> result;
     std::copy_n(index.begin(), space, result.begin());
     return result;
   }
   bool is_along_time(GridEdge edge) const { return edge / static_cast<GridEdge>(dims_[0]) >> space & 1; }
-  GridEdge edge_along_time(const Sample& sample) const {
-    std::int64_t row = 1; // of the upper step, where the edge ends
-    for (int axis = space - 1; axis > 0; --axis) row = row * dims_[axis] + sample[axis];
-    return (static_cast<GridEdge>(row) << D | GridEdge{1} << space) * static_cast<GridEdge>(dims_[0]) +
-           static_cast<GridEdge>(sample[0]);
-  }
-  // From the number of an edge within the lower step to that within the upper one.
-  GridEdge step_offset() const {
-    GridEdge samples = 1;
-    for (int axis = 0; axis < space; ++axis) samples *= static_cast<GridEdge>(dims_[axis]);
-    return samples << D;
-  }
   // Samples that are on no wall.
   std::uint64_t within(std::size_t row, std::size_t word) const {
     auto rest = static_cast<std::int64_t>(row);

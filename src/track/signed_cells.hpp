@@ -14,14 +14,13 @@ class SignedCells {
  public:
   SignedCells(const MarchTable<D>& table, const std::array<std::int64_t, D>& dims)
       : table_(table), dims_(dims) {
-    const auto row_length = static_cast<GridEdge>(dims_[0]);
     for (unsigned upper = 1; upper < 1u << D; ++upper)
       for (int axis = 0; axis < D; ++axis)
         if (upper >> axis & 1) {
-          GridEdge row = 0;
-          for (int a = D - 1; a > 0; --a) row = row * static_cast<GridEdge>(dims_[a]) + (upper >> a & 1);
+          std::array<std::int64_t, D> end; // of an edge of the first cell
+          for (int a = 0; a < D; ++a) end[a] = upper >> a & 1;
           const unsigned slot = CellEdges<D, Method::hull>::slot(upper & ~(1u << axis), upper);
-          edge_offset_[slot] = (row << D | GridEdge{1} << axis) * row_length + (upper & 1);
+          edge_offset_[slot] = grid_edge<D>(dims_, end, 1u << axis);
         }
   }
   virtual ~SignedCells() = default;
@@ -163,6 +162,7 @@ class MaskedCells final : public SignedCells<D> {
   double time_between(const std::array<std::int64_t, D>& lower) const override {
     return crossings_.time_at(row_in_step(lower), static_cast<std::size_t>(lower[0]));
   }
+
   Method method_;
   Crossings<D> crossings_;
   std::array<std::size_t, 1u << (D - 2)> row_offset_{}; // of the rows of a cell, by their place in a column

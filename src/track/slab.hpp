@@ -185,7 +185,9 @@ class Slab {
       const std::size_t first_corner = corners_.size();
       corners_.resize(first_corner + slots.size());
       const GridEdge origin = cells_->edge_of_origin(cell);
-      std::array<Vertex, 32> vertex; // of each slot
+      constexpr unsigned most_slots = CellEdges<C, Method::hull>::slots;
+      static_assert(most_slots <= 32);
+      std::array<Vertex, most_slots> vertex; // of each slot
       std::uint32_t known = 0;
       for (std::size_t i = 0; i < slots.size(); ++i) {
         const unsigned slot = slots[i];
