@@ -40,6 +40,13 @@ class Tracking(Case):
         self.assert_refused(2, *run, "--select", "none:0", words=["none/tracks.csv"])
         self.assert_refused(2, *run, "--select", "all:0", "--track", "region", words=["surfaces"])
 
+    def test_what_a_slab_of_noise_holds_counts(self):
+        """Found while the slab is passed, as it is not known before: at once, not minutes later."""
+        path = self.sample("noise", "40,40,40,2")
+        memory = self.beside_the_program(path, 8 << 10)
+        self.assert_refused(1, "track", path, "--iso", "0.5", *memory, "-o", "tracks", words=["8 MiB", "--memory"])
+        self.assertEqual(self.files(), ["field.nrrd"])
+
     def test_other_fields_are_columns(self):
         path = self.sample("gaussians", "12,12,12,5")
         self.ok("track", path, "--iso", "0.5", "--with", f"again={path}", "-o", "all")

@@ -8,6 +8,7 @@ namespace {
 using check::count_events;
 using check::expect_history;
 using check::make_field;
+using check::signature;
 using check::space_time_grid;
 using check::time_field;
 using check::track_field;
@@ -69,6 +70,31 @@ TEST(Track, tracks_end_and_begin_somewhere_at_a_step_without_a_surface) {
     EXPECT_EQ(feature.centroid, (std::vector<double>{0.5, 1}));
     EXPECT_EQ(feature.low, feature.centroid);
     EXPECT_EQ(feature.high, feature.centroid);
+  }
+}
+
+// One slab of noise takes long: what is told, and heeded, only at steps would come too late.
+TEST(Track, progress_rises_between_steps_and_cancels_there) {
+  const Field field = time_field<float, 4>(check::random_field<float, 4>({7, 7, 7, 3}, 100, 1));
+  for (const Tracked tracked : {Tracked::surface, Tracked::region}) {
+    TrackOptions options;
+    options.tracked = tracked;
+    const auto expected = signature(track_field(field, 0.5, options));
+    std::vector<double> shares;
+    options.extraction.progress = [&](double share) { return shares.push_back(share), true; };
+    EXPECT_EQ(signature(track_field(field, 0.5, options)), expected);
+    EXPECT_TRUE(std::ranges::is_sorted(shares));
+    EXPECT_EQ(shares.back(), 1);
+    EXPECT_GT(std::ranges::count_if(shares, [](double share) { return share > 0 && share < 0.5; }), 10);
+
+    double last = 0;
+    options.extraction.progress = [&](double share) { return last = share, share == 0; };
+    FieldSteps steps(field);
+    const auto graph = track(steps, 0.5, options);
+    ASSERT_FALSE(graph);
+    EXPECT_EQ(graph.error().code, Code::cancelled);
+    EXPECT_GT(last, 0);
+    EXPECT_LT(last, 0.5);
   }
 }
 

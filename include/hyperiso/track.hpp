@@ -156,7 +156,9 @@ struct FieldBeside {
 };
 
 struct TrackOptions {
-  ExtractOptions extraction = {};            ///< method, inside, memory_limit and progress count
+  /// method, inside, memory_limit and progress count: the limit is for each surface that is made, progress is
+  /// told at each event too, since what a slab of noise takes and holds is not known before.
+  ExtractOptions extraction = {};
   Tracked tracked = Tracked::surface;        ///< a region only with the methods hull and simplicial
   std::optional<double> upper_isovalue = {}; ///< of a region: it lies between `isovalue` and this one
   bool measure_features = true;              ///< else features and links stay empty, and identity goes by age

@@ -76,15 +76,10 @@ TrackedFolder folder_of(const Track& options) {
   return folder;
 }
 
-// Through the seeds alone.
-TrackingGraph local_graph(const TrackedFolder& folder, StepSource& steps, TrackOptions tracking, bool quiet) {
-  ProgressBar bar("track", quiet);
-  tracking.extraction.progress = bar.callback();
-  std::vector<std::vector<std::int64_t>> cells;
-  for (const std::string& seed : folder.seeds) cells.push_back(cell_at(seed, steps.info().axes));
-  TrackingGraph graph = take(track_from_seeds(steps, folder.tracking.isovalue(), cells, tracking)).graph;
-  folder.tracking.simplify(graph);
-  return graph;
+SeedCells cells_at(const std::vector<std::string>& seeds, const std::vector<Axis>& axes) {
+  SeedCells cells;
+  for (const std::string& seed : seeds) cells.push_back(cell_at(seed, axes));
+  return cells;
 }
 
 // One surface per step, named by its tracks, and a series of them.
@@ -165,9 +160,8 @@ int run(Track options, const CLI::App& verb) {
   const std::vector<NamedSteps> others = beside.open(options.input, options.machine);
   for (const NamedSteps& other : others) tracking.with.push_back({other.name, other.steps.get()});
   const Stopwatch watch;
-  const TrackingGraph graph = options.is_local()
-                                  ? local_graph(folder, steps, tracking, options.printing.quiet)
-                                  : options.tracking.track(steps, tracking, options.printing.quiet);
+  const TrackingGraph graph = options.tracking.track(steps, tracking, options.printing.quiet,
+                                                     cells_at(folder.seeds, steps.info().axes));
   const double track_seconds = watch.seconds();
   if (graph.tracks.empty() && !options.printing.quiet)
     print_warning(text("there is nothing at ", options.tracking.iso, options.tracking.range,
@@ -223,11 +217,6 @@ Command track_command(CLI::App& program) {
       ->group("Output");
   options->printing.add_to(*app);
   options->machine.add_to(*app);
-  app->get_option("--memory")
-      ->description(
-          "the most memory for two steps and their surfaces, for example 800M or 4G (K, M, G, T: powers of "
-          "1024). What is looked at between two steps comes on top: some hundred bytes for each cell that "
-          "an event or the search for its pieces comes to. Left out: 80 % of what is free");
   set_manual(
       *app,
       {{"track INPUT... --iso V [--track region] [-o FOLDER] [options]",

@@ -3,8 +3,10 @@
 #include "cli/console.hpp"
 #include "cli/failure.hpp"
 #include "cli/parse.hpp"
+#include "core/memory.hpp"
 #include "core/text.hpp"
 
+#include <fmt/format.h>
 #include <optional>
 
 namespace hyperiso::cli {
@@ -45,6 +47,40 @@ Isovalues isovalues_of(const TrackingOptions& options) {
   if (colon == std::string::npos) fail_usage(text("--range: '", options.range, "' is not A:B"));
   return {parse_number("--range", options.range.substr(0, colon)),
           parse_number("--range", options.range.substr(colon + 1))};
+}
+
+// What a slab holds is known only once it is passed: it is looked at now and then.
+class MemoryWatch {
+ public:
+  // For so many bytes more than the program holds now.
+  explicit MemoryWatch(std::uint64_t bytes) {
+    const std::uint64_t held = held_memory();
+    most_ = bytes < UINT64_MAX - held ? held + bytes : UINT64_MAX;
+  }
+
+  bool is_over() {
+    constexpr double interval = 0.02; // asking the system takes some 20 microseconds
+    if (since_look_.seconds() < interval) return false;
+    since_look_ = {};
+    return held_memory() > most_;
+  }
+
+ private:
+  std::uint64_t most_;
+  Stopwatch since_look_;
+};
+
+// Of the methods: what MachineOptions says comes on top of --memory.
+std::uint64_t most_for_tables(const TrackOptions& options, int dimension) {
+  return std::uint64_t{options.tracked == Tracked::region && dimension == 4 ? 140u : 20u} << 20;
+}
+
+Result<TrackingGraph> graph_of(StepSource& steps, double isovalue, const SeedCells& seeds,
+                               const TrackOptions& options) {
+  if (seeds.empty()) return hyperiso::track(steps, isovalue, options);
+  auto local = track_from_seeds(steps, isovalue, seeds, options);
+  if (!local) return local.error();
+  return std::move(local->graph);
 }
 
 } // namespace
@@ -110,12 +146,26 @@ void TrackingOptions::simplify(TrackingGraph& graph) const {
                      not_negative("--min-duration", minimum_duration));
 }
 
-TrackingGraph TrackingOptions::track(StepSource& steps, TrackOptions options, bool quiet) const {
+TrackingGraph TrackingOptions::track(StepSource& steps, TrackOptions options, bool quiet,
+                                     const SeedCells& seeds) const {
   ProgressBar bar("track", quiet);
-  options.extraction.progress = bar.callback();
-  TrackingGraph graph = take(hyperiso::track(steps, isovalue(), options));
-  simplify(graph);
-  return graph;
+  const std::uint64_t limit = options.extraction.memory_limit;
+  const std::uint64_t tables = most_for_tables(options, steps.info().dimension());
+  MemoryWatch watch(limit < UINT64_MAX - tables ? limit + tables : limit);
+  double share = 0;
+  options.extraction.progress = [&](double done) {
+    bar.show(share = done);
+    return !watch.is_over();
+  };
+  auto graph = graph_of(steps, isovalue(), seeds, options);
+  if (!graph && graph.error().code == Code::cancelled)
+    throw Failure{{Code::out_of_memory,
+                   fmt::format("tracking holds more than {}, {:.0f} % of the way through time; a field with "
+                               "less noise takes less",
+                               byte_size(limit), 100 * share)}};
+  if (!graph) throw Failure{graph.error()};
+  simplify(*graph);
+  return *std::move(graph);
 }
 
 } // namespace hyperiso::cli

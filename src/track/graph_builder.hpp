@@ -6,12 +6,26 @@
 
 namespace hyperiso::track_detail {
 
+// Thrown where `progress` asks to stop; never leaves the library.
+struct TrackingCancelled {};
+
 class GraphBuilder {
  public:
-  explicit GraphBuilder(TrackingGraph& graph) : graph_(graph) {}
+  // `progress` hears of each event, as one slab may take long and hold much.
+  GraphBuilder(TrackingGraph& graph, const Progress& progress) : graph_(graph), progress_(progress) {}
+
+  // That all is passed before `time`. Throws TrackingCancelled.
+  void tell_progress(double time) const {
+    if (!progress_) return;
+    const Axis& steps = graph_.axes.back();
+    const double first = steps.coordinate(0), last = steps.coordinate(steps.count - 1);
+    if (!progress_((time - first) / (last - first))) throw TrackingCancelled{};
+  }
 
   // Ends the arcs `in` in a new event and starts `out` arcs there; they are the last ones.
+  // Throws TrackingCancelled.
   TrackingEvent& add_event(EventType type, double time, std::vector<std::int64_t> in, std::size_t out) {
+    tell_progress(time);
     const auto number = static_cast<std::int64_t>(graph_.events.size());
     TrackingEvent& event = graph_.events.emplace_back();
     event.type = type;
@@ -28,6 +42,7 @@ class GraphBuilder {
 
  private:
   TrackingGraph& graph_;
+  const Progress& progress_;
 };
 
 // From just before a node to just after it: of the Euler characteristic and of the boundary curves on walls.

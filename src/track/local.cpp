@@ -23,7 +23,8 @@ template <class T, int D>
 class LocalRun {
  public:
   LocalRun(StepSource& source, double isovalue, const TrackOptions& options)
-      : source_(source), isovalue_(isovalue), extraction_(options.extraction), builder_(result_.graph) {
+      : source_(source), isovalue_(isovalue), extraction_(options.extraction),
+        builder_(result_.graph, options.extraction.progress) {
     result_.graph.axes = source.info().axes;
     result_.graph.steps = result_.graph.axes.back().count;
     result_.graph.isovalue = isovalue;
@@ -264,6 +265,8 @@ Result<LocalTracking> track_from_seeds(StepSource& source, double isovalue,
       if (info.dimension() == 3) return LocalRun<T, 3>(source, isovalue, options).run(cells);
       return LocalRun<T, 4>(source, isovalue, options).run(cells);
     });
+  } catch (const TrackingCancelled&) {
+    return Error{Code::cancelled, "tracking was cancelled"};
   } catch (const std::bad_alloc&) {
     return Error{Code::out_of_memory, "not enough memory to track"};
   }

@@ -61,6 +61,8 @@ Result<TrackingGraph> track(StepSource& source, double isovalue, const TrackOpti
   try {
     return options.tracked == Tracked::region ? track_detail::track_region(source, isovalue, options)
                                               : track_detail::track_surface(source, isovalue, options);
+  } catch (const track_detail::TrackingCancelled&) {
+    return Error{Code::cancelled, "tracking was cancelled"};
   } catch (const std::bad_alloc&) {
     return Error{Code::out_of_memory, "not enough memory to track"};
   }

@@ -20,7 +20,8 @@ class TrackingRun {
 
  public:
   TrackingRun(StepSource& source, double isovalue, const TrackOptions& options)
-      : options_(options), target_(isovalue, options), window_(source), builder_(graph_), links_(graph_) {
+      : options_(options), target_(isovalue, options), window_(source),
+        builder_(graph_, options.extraction.progress), links_(graph_) {
     graph_.axes = source.info().axes;
     graph_.steps = graph_.axes.back().count;
     graph_.tracked = options.tracked;
@@ -44,10 +45,7 @@ class TrackingRun {
       upper->run(builder_);
       lower = std::move(upper);
       step_ = std::move(next->step);
-      if (options_.extraction.progress &&
-          !options_.extraction.progress(static_cast<double>(step + 1) /
-                                        static_cast<double>(graph_.steps - 1)))
-        return Error{Code::cancelled, "tracking was cancelled"};
+      builder_.tell_progress(time(step + 1));
     }
     if (const Status passed = pass_step(graph_.steps - 1, lower.get(), nullptr); !passed)
       return passed.error();
