@@ -42,16 +42,24 @@ void run_workers(int workers, Work&& work) {
   if (failure) std::rethrow_exception(failure);
 }
 
+// Calls work(worker, number) once for each number 0, ..., count - 1. They are begun in this order, each by
+// the first of at most `workers` that is free. Rethrows the first exception.
+template <class Work>
+void share_out(int workers, std::size_t count, Work&& work) {
+  std::atomic<std::size_t> next = 0;
+  const std::size_t most = std::max<std::size_t>(count, 1);
+  run_workers(static_cast<int>(std::min(static_cast<std::size_t>(workers), most)), [&](int worker) {
+    for (std::size_t number; (number = next++) < count;) work(worker, number);
+  });
+}
+
 // Calls tasks that do not depend on each other, begun in their order, on so many threads. Rethrows the first
 // exception.
 template <class... Tasks>
 void run_tasks(int threads, Tasks&&... tasks) {
-  std::atomic<std::size_t> next = 0;
-  run_workers(std::min(threads, static_cast<int>(sizeof...(tasks))), [&](int) {
-    for (std::size_t chosen; (chosen = next++) < sizeof...(tasks);) {
-      std::size_t number = 0;
-      ((number++ == chosen ? static_cast<void>(tasks()) : static_cast<void>(0)), ...);
-    }
+  share_out(threads, sizeof...(tasks), [&](int, std::size_t chosen) {
+    std::size_t number = 0;
+    ((number++ == chosen ? static_cast<void>(tasks()) : static_cast<void>(0)), ...);
   });
 }
 

@@ -248,14 +248,12 @@ class Engine {
     std::vector<std::uint64_t> first_simplex{0};
     for (const UnitCells& unit : memory_.unit_cells)
       first_simplex.push_back(first_simplex.back() + unit.simplices);
-    std::atomic<std::size_t> next = 0;
-    std::atomic<bool> stopped = false;
-    run_workers(workers_, [&](int worker) {
-      for (std::size_t unit; !stopped && (unit = next++) < memory_.unit_cells.size();) {
-        emit_unit(memory_.unit_cells[unit], first_simplex[unit]);
-        const double share = static_cast<double>(unit + 1) / static_cast<double>(memory_.unit_cells.size());
-        if (worker == 0 && !report(scan_share + (1 - scan_share) * share)) stopped = true;
-      }
+    const std::size_t units = memory_.unit_cells.size();
+    share_out(workers_, units, [&](int worker, std::size_t unit) {
+      if (cancelled_) return;
+      emit_unit(memory_.unit_cells[unit], first_simplex[unit]);
+      const double share = static_cast<double>(unit + 1) / static_cast<double>(units);
+      if (worker == 0) report(scan_share + (1 - scan_share) * share);
     });
     if (cancelled_ || !report(1)) return cancelled();
     return {};

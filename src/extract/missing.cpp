@@ -2,27 +2,25 @@
 
 #include "core/parallel.hpp"
 
-#include <atomic>
-
 namespace hyperiso {
 namespace {
 
-// Calls use(worker, index of the row's first sample, row) for every row, shared out among the workers.
+// Calls use(index of the row's first sample, row) for every row, shared out among the workers.
 template <int D, class Use>
 void for_each_row(const RowGrid<D>& grid, int workers, Use&& use) {
-  constexpr std::int64_t at_once = 256;
-  std::atomic<std::int64_t> next = 0;
-  run_workers(workers, [&](int) {
-    for (std::int64_t first; (first = next.fetch_add(at_once)) < grid.rows;)
-      for (std::int64_t row = first; row < std::min(first + at_once, grid.rows); ++row) {
-        std::array<std::int64_t, D> index{};
-        std::int64_t rest = row;
-        for (int axis = 1; axis < D; ++axis) {
-          index[axis] = rest % grid.dims[axis];
-          rest /= grid.dims[axis];
-        }
-        use(index, row);
+  constexpr std::int64_t block_rows = 256;
+  const auto blocks = static_cast<std::size_t>((grid.rows + block_rows - 1) / block_rows);
+  share_out(workers, blocks, [&](int, std::size_t block) {
+    const std::int64_t first = static_cast<std::int64_t>(block) * block_rows;
+    for (std::int64_t row = first; row < std::min(first + block_rows, grid.rows); ++row) {
+      std::array<std::int64_t, D> index{};
+      std::int64_t rest = row;
+      for (int axis = 1; axis < D; ++axis) {
+        index[axis] = rest % grid.dims[axis];
+        rest /= grid.dims[axis];
       }
+      use(index, row);
+    }
   });
 }
 

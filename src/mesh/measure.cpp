@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -216,18 +215,13 @@ void add_contents(std::span<const Real> positions, std::span<const Index> simpli
   const std::size_t count = simplices.size() / Corners,
                     blocks = (count + block_simplices - 1) / block_simplices;
   std::vector<ContentSums<D>> sums(blocks);
-  std::atomic<std::size_t> next = 0;
-  const auto workers =
-      std::min(static_cast<std::size_t>(worker_count(threads)), std::max<std::size_t>(blocks, 1));
-  run_workers(static_cast<int>(workers), [&](int) {
-    for (std::size_t block; (block = next++) < blocks;) {
-      ContentAdder<D, Corners> adder;
-      ContentSums<D> sum;
-      const std::size_t end = std::min(count, (block + 1) * block_simplices);
-      for (std::size_t simplex = block * block_simplices; simplex < end; ++simplex)
-        adder.add(positions, simplices.subspan(simplex * Corners, Corners), sum);
-      sums[block] = sum;
-    }
+  share_out(worker_count(threads), blocks, [&](int, std::size_t block) {
+    ContentAdder<D, Corners> adder;
+    ContentSums<D> sum;
+    const std::size_t end = std::min(count, (block + 1) * block_simplices);
+    for (std::size_t simplex = block * block_simplices; simplex < end; ++simplex)
+      adder.add(positions, simplices.subspan(simplex * Corners, Corners), sum);
+    sums[block] = sum;
   });
   for (const ContentSums<D>& sum : sums) {
     contents.content += sum.content;
