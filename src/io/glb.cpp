@@ -5,6 +5,7 @@
 #include "core/text.hpp"
 #include "hyperiso/colours.hpp"
 #include "io/atomic_file.hpp"
+#include "mesh/attributes.hpp"
 #include "mesh/normals.hpp"
 
 #include <algorithm>
@@ -42,18 +43,6 @@ constexpr int mode_lines = 1, mode_triangles = 4;
 constexpr int type_byte = 5120, type_i16 = 5122, type_u16 = 5123, type_u32 = 5125, type_float = 5126;
 constexpr int target_vertices = 34962, target_corners = 34963;
 
-const Attribute* attribute_of(const Mesh& mesh, const char* name, Attribute::Location location,
-                              int components) {
-  for (const Attribute& attribute : mesh.attributes)
-    if (attribute.name == name && attribute.location == location && attribute.components == components)
-      return &attribute;
-  return nullptr;
-}
-
-double value_of(const Attribute& attribute, std::size_t place) {
-  return std::visit([&](const auto& values) { return static_cast<double>(values[place]); }, attribute.values);
-}
-
 // Positions in R^2 get z = 0.
 std::vector<float> in_space(const Mesh& mesh) {
   const auto D = static_cast<std::size_t>(mesh.dimension);
@@ -80,14 +69,12 @@ std::uint16_t linear(double srgb) {
 }
 
 std::vector<std::uint16_t> colours_of(const Mesh& mesh) {
-  std::array<const Attribute*, 3> channels{};
-  for (std::size_t k = 0; k < 3; ++k)
-    channels[k] = attribute_of(mesh, std::array{"red", "green", "blue"}[k], Attribute::Location::vertex, 1);
-  if (std::ranges::find(channels, nullptr) != channels.end()) return {};
+  const auto channels = vertex_colours(mesh);
+  if (!channels) return {};
   std::vector<std::uint16_t> colours;
   colours.reserve(4 * mesh.vertex_count());
   for (std::size_t vertex = 0; vertex < mesh.vertex_count(); ++vertex) {
-    for (const Attribute* channel : channels) colours.push_back(linear(value_of(*channel, vertex)));
+    for (const Attribute* channel : *channels) colours.push_back(linear(value_of(*channel, vertex)));
     colours.push_back(65535);
   }
   return colours;
@@ -126,14 +113,14 @@ Status GlbMovie::add(const Mesh& mesh, double time, double seconds, const Mesh* 
     frame.corners_per_simplex = mesh.simplex_dimension + 1;
     frame.positions = in_space(mesh);
     if (end) frame.end_positions = in_space(*end);
-    if (triangles && end && !attribute_of(mesh, normal_attribute, Attribute::Location::vertex, 3)) {
+    if (triangles && end && !find_attribute(mesh, Attribute::Location::vertex, normal_attribute, 3)) {
       frame.normals = vertex_normals(halfway(mesh, *end));
     } else if (triangles) {
       frame.normals = vertex_normals(mesh);
       if (end) frame.end_normals = vertex_normals(*end);
     }
     frame.colours = colours_of(mesh);
-    const auto* tracks = attribute_of(mesh, "track_id", Attribute::Location::simplex, 1);
+    const Attribute* tracks = track_of_simplices(mesh);
     const auto corners = static_cast<std::size_t>(frame.corners_per_simplex);
     std::map<std::int64_t, Frame::Part> parts;
     for (std::size_t simplex = 0; simplex < mesh.simplex_count(); ++simplex) {

@@ -1,5 +1,7 @@
 #include "mesh/normals.hpp"
 
+#include "mesh/attributes.hpp"
+
 #include <array>
 #include <cmath>
 
@@ -10,18 +12,10 @@ using Vector = std::array<double, 3>;
 
 std::vector<Vector> attribute_normals(const Mesh& mesh) {
   std::vector<Vector> normals;
-  for (const Attribute& attribute : mesh.attributes) {
-    if (attribute.name != "normal" || attribute.location != Attribute::Location::vertex ||
-        attribute.components != 3)
-      continue;
-    normals.resize(mesh.vertex_count());
-    std::visit(
-        [&](const auto& values) {
-          for (std::size_t k = 0; k < values.size(); ++k)
-            normals[k / 3][k % 3] = static_cast<double>(values[k]);
-        },
-        attribute.values);
-  }
+  const Attribute* attribute = find_attribute(mesh, Attribute::Location::vertex, normal_attribute, 3);
+  if (!attribute) return normals;
+  normals.resize(mesh.vertex_count());
+  for (std::size_t k = 0; k < 3 * normals.size(); ++k) normals[k / 3][k % 3] = value_of(*attribute, k);
   return normals;
 }
 

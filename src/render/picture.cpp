@@ -2,6 +2,7 @@
 
 #include "core/text.hpp"
 #include "hyperiso/render.hpp"
+#include "mesh/attributes.hpp"
 #include "render/camera.hpp"
 #include "render/canvas.hpp"
 #include "render/ray_cast.hpp"
@@ -99,31 +100,19 @@ void label_axes(Canvas& canvas, const Camera& camera, const RenderOptions& optio
 }
 
 // The colour of a segment: of its vertices, of its track, or one for all.
-Colour colour_of_segment(const Mesh& frame, std::size_t segment) {
-  const auto mean = [&](const Attribute& attribute) {
-    return std::visit(
-        [&](const auto& values) {
-          return static_cast<std::uint8_t>((static_cast<double>(values[frame.simplices[2 * segment]]) +
-                                            static_cast<double>(values[frame.simplices[2 * segment + 1]])) /
-                                           2);
-        },
-        attribute.values);
-  };
-  Colour colour = curve_colour;
-  for (const Attribute& attribute : frame.attributes) {
-    if (attribute.components != 1) continue;
-    if (attribute.location == Attribute::Location::simplex && attribute.name == "track_id")
-      colour = std::visit(
-          [&](const auto& values) {
-            return values[segment] >= 0 ? label_colour(static_cast<std::int64_t>(values[segment])) : colour;
-          },
-          attribute.values);
-    if (attribute.location != Attribute::Location::vertex) continue;
-    if (attribute.name == "red") colour.red = mean(attribute);
-    if (attribute.name == "green") colour.green = mean(attribute);
-    if (attribute.name == "blue") colour.blue = mean(attribute);
+Colour colour_of_segment(const Mesh& frame, std::size_t segment,
+                         const std::optional<ColourChannels>& channels, const Attribute* tracks) {
+  if (channels) {
+    const auto mean = [&](const Attribute* channel) {
+      return static_cast<std::uint8_t>((value_of(*channel, frame.simplices[2 * segment]) +
+                                        value_of(*channel, frame.simplices[2 * segment + 1])) /
+                                       2);
+    };
+    return {mean((*channels)[0]), mean((*channels)[1]), mean((*channels)[2])};
   }
-  return colour;
+  if (tracks && value_of(*tracks, segment) >= 0)
+    return label_colour(static_cast<std::int64_t>(value_of(*tracks, segment)));
+  return curve_colour;
 }
 
 // A frame in the plane: axis 0 to the right, axis 1 up, both to one scale.
@@ -141,9 +130,11 @@ void draw_curves(Canvas& canvas, const Mesh& frame, const RenderOptions& options
                  corner.y + scale * (options.high[1] - frame.positions[2 * vertex + 1])};
   };
   canvas.frame(corner, scale * width, scale * height, edge_colour);
+  const auto channels = vertex_colours(frame);
+  const Attribute* tracks = track_of_simplices(frame);
   for (std::size_t segment = 0; segment < frame.simplex_count(); ++segment)
     canvas.line(place(frame.simplices[2 * segment]), place(frame.simplices[2 * segment + 1]),
-                colour_of_segment(frame, segment), 2 * size);
+                colour_of_segment(frame, segment, channels, tracks), 2 * size);
 
   const double right = corner.x + scale * width, bottom = corner.y + scale * height;
   canvas.text(short_number(options.low[0]), {corner.x, bottom + 20 * size}, 13 * size, pale_ink);

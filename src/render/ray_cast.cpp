@@ -1,9 +1,9 @@
 #include "render/ray_cast.hpp"
 
 #include "core/parallel.hpp"
+#include "mesh/attributes.hpp"
 #include "mesh/normals.hpp"
 
-#include <atomic>
 #include <embree3/rtcore.h>
 #include <memory>
 #include <new>
@@ -26,35 +26,20 @@ T* new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std::s
   return static_cast<T*>(buffer);
 }
 
-const Attribute* attribute_of(const Mesh& mesh, const char* name, Attribute::Location location) {
-  for (const Attribute& attribute : mesh.attributes)
-    if (attribute.name == name && attribute.location == location && attribute.components == 1)
-      return &attribute;
-  return nullptr;
-}
-
-double value_of(const Attribute& attribute, std::size_t place) {
-  return std::visit([&](const auto& values) { return static_cast<double>(values[place]); }, attribute.values);
-}
-
 constexpr Vector plain_outside{143, 179, 217}, plain_inside{217, 176, 138};
 
 // The colours of the surface, before any light.
 class Paint {
  public:
-  explicit Paint(const Mesh& mesh) : mesh_(mesh) {
-    const std::array names{"red", "green", "blue"};
-    for (std::size_t k = 0; k < 3; ++k)
-      channels_[k] = attribute_of(mesh, names[k], Attribute::Location::vertex);
-    tracks_ = attribute_of(mesh, "track_id", Attribute::Location::simplex);
-  }
+  explicit Paint(const Mesh& mesh)
+      : mesh_(mesh), channels_(vertex_colours(mesh)), tracks_(track_of_simplices(mesh)) {}
 
   Vector at(std::size_t triangle, const Vector& weights, bool inside) const {
-    if (channels_[0] && channels_[1] && channels_[2]) {
+    if (channels_) {
       Vector colour{};
       for (std::size_t corner = 0; corner < 3; ++corner)
         for (std::size_t k = 0; k < 3; ++k)
-          colour[k] += weights[corner] * value_of(*channels_[k], mesh_.simplices[3 * triangle + corner]);
+          colour[k] += weights[corner] * value_of(*(*channels_)[k], mesh_.simplices[3 * triangle + corner]);
       return colour;
     }
     if (tracks_ && value_of(*tracks_, triangle) >= 0) {
@@ -66,8 +51,8 @@ class Paint {
 
  private:
   const Mesh& mesh_;
-  std::array<const Attribute*, 3> channels_{};
-  const Attribute* tracks_ = nullptr;
+  const std::optional<ColourChannels> channels_;
+  const Attribute* const tracks_;
 };
 
 class RayCaster {
@@ -202,11 +187,8 @@ std::vector<Shaded> cast_rays(const Mesh& mesh, const Camera& camera, const Rend
   std::vector<Shaded> pixels(width * static_cast<std::size_t>(options.height));
   if (mesh.simplex_count() == 0) return pixels;
   const RayCaster caster(mesh, camera, options);
-  std::atomic<int> next_row{0};
-  run_workers(worker_count(options.threads), [&](int) {
-    for (int row = next_row++; row < options.height; row = next_row++)
-      caster.cast_row(row, &pixels[static_cast<std::size_t>(row) * width]);
-  });
+  share_out(worker_count(options.threads), static_cast<std::size_t>(options.height),
+            [&](int, std::size_t row) { caster.cast_row(static_cast<int>(row), &pixels[row * width]); });
   return pixels;
 }
 

@@ -1,5 +1,7 @@
 #include "view/lift.hpp"
 
+#include "mesh/attributes.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,13 +12,10 @@ namespace {
 
 // The numbers of a vertex attribute; nothing if there is none of the name.
 std::optional<std::vector<double>> numbers_of(const Mesh& mesh, std::string_view name) {
-  for (const Attribute& attribute : mesh.attributes)
-    if (attribute.name == name && attribute.location == Attribute::Location::vertex &&
-        attribute.components == 1)
-      return std::visit(
-          [](const auto& values) { return std::optional(std::vector<double>(values.begin(), values.end())); },
-          attribute.values);
-  return std::nullopt;
+  const Attribute* attribute = find_attribute(mesh, Attribute::Location::vertex, name);
+  if (!attribute) return std::nullopt;
+  return std::visit([](const auto& values) { return std::vector<double>(values.begin(), values.end()); },
+                    attribute->values);
 }
 
 } // namespace
