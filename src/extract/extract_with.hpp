@@ -1,6 +1,7 @@
 #pragma once
 // `extract` with the choices that only tests and benchmarks make.
 
+#include "core/orientation.hpp"
 #include "extract/engine.hpp"
 
 #include <algorithm>
@@ -24,9 +25,7 @@ Status extract_with(const FieldView<const T, D>& field, double isovalue, const E
     mesh.active_cells = 0;
     return {};
   }
-  const auto falling =
-      std::ranges::count_if(field.grid.axes, [](const Axis& axis) { return !axis.increasing(); });
-  return run_engine(samples, {.mirrored = falling % 2 == 1}, options, engine_options, mesh);
+  return run_engine(samples, {.mirrored = mirror_space(field.grid.axes)}, options, engine_options, mesh);
 }
 
 } // namespace hyperiso

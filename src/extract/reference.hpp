@@ -3,6 +3,7 @@
 // give, vertex for vertex and simplex for simplex. It also extracts in the dimensions that the engine does
 // not.
 
+#include "core/orientation.hpp"
 #include "core/sign.hpp"
 #include "extract/cell_corners.hpp"
 #include "extract/surface_memory.hpp"
@@ -244,8 +245,7 @@ Status extract_plainly(const FieldView<const T, D>& field, double isovalue, cons
     const auto position = reference_position(field, mesh.edges[vertex], isovalue);
     for (std::size_t axis = 0; axis < D; ++axis) mesh.positions.set(vertex * D + axis, position[axis]);
   }
-  const auto falling = std::ranges::count_if(field.grid.axes, [](const Axis& a) { return !a.increasing(); });
-  number_corners<D>(field.dims(), found, mesh.edges, falling % 2 == 1, mesh);
+  number_corners<D>(field.dims(), found, mesh.edges, mirror_space(field.grid.axes), mesh);
   if (options.keep_edges)
     mesh.grid_axes.assign(field.grid.axes.begin(), field.grid.axes.end());
   else

@@ -4,6 +4,7 @@
 
 #include "hyperiso/seeds.hpp"
 
+#include "core/orientation.hpp"
 #include "core/sign.hpp"
 #include "core/text.hpp"
 #include "core/union_find.hpp"
@@ -142,8 +143,8 @@ class Tracer {
       if (next % 4096 != 0) continue;
       if (bytes() > options_.memory_limit)
         return Error{Code::out_of_memory,
-                     text("the surface traced so far, ", simplices_.size(), " simplices, takes ", bytes(),
-                          " bytes, the limit is ", options_.memory_limit)};
+                     text("the surface traced so far, ", simplices_.size(), " simplices, takes ",
+                          byte_size(bytes()), ", the limit is ", byte_size(options_.memory_limit))};
       const double share = static_cast<double>(next) / static_cast<double>(edges_.size());
       if (options_.progress && !options_.progress(share))
         return Error{Code::cancelled, "the tracing was cancelled"};
@@ -166,13 +167,12 @@ class Tracer {
     }
 
     std::ranges::sort(simplices_);
-    const auto falling =
-        std::ranges::count_if(field_.grid.axes, [](const Axis& axis) { return !axis.increasing(); });
+    const bool mirrored = mirror_space(field_.grid.axes);
     mesh.simplices.reset(simplices_.size() * D, edges_.size() > UINT32_MAX);
     std::size_t corner = 0;
     for (const Simplex& simplex : simplices_) {
       auto corners = simplex.corners;
-      if (falling % 2 == 1) std::swap(corners[0], corners[1]);
+      if (mirrored) std::swap(corners[0], corners[1]);
       for (const std::uint64_t vertex : corners) mesh.simplices.set(corner++, number[vertex]);
     }
     for (const auto& [cell, state] : cells_) mesh.active_cells += state.taken != 0;

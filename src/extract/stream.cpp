@@ -1,5 +1,6 @@
 #include "hyperiso/stream.hpp"
 
+#include "core/orientation.hpp"
 #include "core/text.hpp"
 #include "extract/check_options.hpp"
 #include "extract/extract_with.hpp"
@@ -37,11 +38,10 @@ class StreamRun {
   }
 
   Status run() {
-    const auto falling =
-        std::ranges::count_if(info_.axes, [](const Axis& axis) { return !axis.increasing(); });
     const bool any_cell = std::ranges::all_of(samples_.dims, [](std::int64_t count) { return count >= 2; });
     if (any_cell && !samples_.test.never)
-      engine_ = make_slab_engine(samples_, {.mirrored = falling % 2 == 1}, options_, engine_options_, mesh_);
+      engine_ = make_slab_engine(samples_, {.mirrored = mirror_space(info_.axes)}, options_, engine_options_,
+                                 mesh_);
     for (slab_ = 0; slab_ < slabs_; ++slab_) {
       if (Status status = extract_slab(); !status) return status;
       const std::uint64_t vertices = mesh_.vertex_count(), simplices = mesh_.simplex_count();

@@ -1,6 +1,7 @@
 #include "hyperiso/interval.hpp"
 
 #include "core/instantiate.hpp"
+#include "core/orientation.hpp"
 #include "core/text.hpp"
 #include "extract/engine.hpp"
 #include "extract/surface_memory.hpp"
@@ -31,10 +32,8 @@ Status check_levels(std::span<const double> levels) {
 // falls along it.
 template <class T, int D>
 bool mirrored(const FieldView<const T, D>& field, Inside inside) {
-  const auto falling =
-      std::ranges::count_if(field.grid.axes, [](const Axis& axis) { return !axis.increasing(); });
   const bool projects_positively = (D % 2 == 0) == (inside == Inside::above);
-  return (falling % 2 == 1) != !projects_positively;
+  return mirror_space(field.grid.axes) != !projects_positively;
 }
 
 // Takes the last coordinate off the positions, into attributes.

@@ -1,5 +1,6 @@
 #include "hyperiso/mesh.hpp"
 
+#include "core/affine.hpp"
 #include "core/determinant.hpp"
 
 #include <algorithm>
@@ -7,15 +8,6 @@
 
 namespace hyperiso {
 namespace {
-
-// Whether the image of an axis depends on it alone, and nothing else does.
-bool stands_alone(const Affine& map, std::size_t axis) {
-  const std::size_t D = map.offset.size();
-  for (std::size_t other = 0; other < D; ++other)
-    if (other != axis && (map.linear[axis * D + other] != 0 || map.linear[other * D + axis] != 0))
-      return false;
-  return true;
-}
 
 // The axis where the map puts its samples. From the coordinates as positions hold them, so that vertices
 // beside samples have the coordinates of these, to the bit.

@@ -1,5 +1,6 @@
 #include "view/page_parts.hpp"
 
+#include "core/affine.hpp"
 #include "core/text.hpp"
 #include "hyperiso/track_files.hpp"
 #include "io/encoding.hpp"
