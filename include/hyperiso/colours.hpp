@@ -36,8 +36,8 @@ struct ColourRange {
 /// Colours the vertices of a mesh by their attribute `name`, which must have one component: adds the vertex
 /// attributes `red`, `green` and `blue`, 0 to 255, in the place of such ones as there are; `write_mesh` makes
 /// them the vertex colours of a .ply. `range`: left out, from the smallest to the largest finite value; a
-/// range without extent gives the middle colour. Error: invalid_argument if there is no such attribute, or it
-/// has several components. Gives the range it took.
+/// range without extent gives the middle colour. Errors: invalid_argument if there is no such attribute, or
+/// it has several components; out_of_memory. Gives the range it took.
 Result<ColourRange> colour_vertices(Mesh& mesh, const std::string& name,
                                     std::optional<ColourRange> range = std::nullopt);
 

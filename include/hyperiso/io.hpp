@@ -144,12 +144,12 @@ struct WriteMeshOptions {
 /// |          |                                    | for a triangle without area                          |
 /// | obj, off | triangles, obj also segments;      | positions, in as many digits as it takes             |
 /// |          | not in R^4                         |                                                      |
-///
 /// | svg      | segments in R^2                    | a picture of the lines: axes, names and units; a     |
 /// |          |                                    | path for each line, closed or open                   |
 /// | geojson  | segments in R^2                    | a LineString for each line, in its own coordinates;  |
 /// |          |                                    | inside on its left, closed ones end where they begin |
 ///
+/// Of attributes svg, geojson, stl, obj and off keep nothing.
 /// Points of a mesh in R^2 get z = 0. Of a mesh in R^4 they are x, y, z; point data `t` is the fourth
 /// coordinate and `xyzt` has all four, so that a contour of `t` in ParaView is a slice in time. In higher
 /// dimensions the points are the first three coordinates, `t` the last, and `coordinates` has all. VTK has no

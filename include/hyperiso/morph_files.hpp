@@ -12,9 +12,11 @@ namespace hyperiso {
 /// Writes moving pieces, whole or not at all. By the suffix of the path:
 ///
 /// | format | what it holds |
-/// | .npz | NumPy's archive of arrays: start and end (pieces x corners x coordinates, f32 or f64), start_time
-/// and end_time (f64), simplex (u64), one row per piece; uncompressed | | any of write_mesh | `morph_mesh`:
-/// the starts, with the ends as point data; vtu and vtp keep all of it |
+/// | .npz | arrays of NumPy, uncompressed, with a row for each piece |
+/// | any of write_mesh | `morph_mesh`: the starts, with the ends as point data; vtu and vtp keep all of it |
+///
+/// The arrays: start and end (pieces x corners x coordinates, f32 or f64), start_time and end_time (f64),
+/// simplex (u64).
 ///
 /// Errors: those of write_mesh; file_unsupported for other suffixes.
 template <int D>

@@ -1,7 +1,7 @@
 #pragma once
 /// \file
-/// A value or an Error. No exception leaves the library, and the library never prints and never exits:
-/// whatever goes wrong with data, files, options or memory comes back through Result.
+/// A value or an Error. Whatever goes wrong with data, files, options or memory comes back through Result: no
+/// exception leaves a call that gives one. Others may throw std::bad_alloc. Nothing here prints or exits.
 
 #include <cassert>
 #include <string>

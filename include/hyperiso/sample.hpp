@@ -26,9 +26,9 @@ struct SampleField {
 /// | gaussians | sum over the blobs of exp(-|x-c|^2 / 0.08); at 0.5, blobs that approach and merge |
 /// | gyroid | sum over the axes of sin(2 pi x_i) cos(2 pi x_(i+1)), shifted once through by time |
 /// | ball | 1 - |x-c|: at 0.5, a ball of radius 1/2; it moves from x = -0.4 to 0.4, and is at 0 when still |
-/// | torus-morph | sphere (t = 0) -> torus (1) -> two spheres (2), after paper 000 figure 7; still: the torus
-/// | | marschner-lobb | the test signal of Marschner and Lobb (IEEE Visualization 1994), its rings moving out
-/// | | noise | independent uniform numbers in [0, 1): every case of every table, no shape at all |
+/// | torus-morph | sphere (t = 0) -> torus (1; also still) -> two spheres (2), after paper 000 figure 7 |
+/// | marschner-lobb | the signal of Marschner and Lobb (IEEE Visualization 1994), its rings moving out |
+/// | noise | independent uniform numbers in [0, 1): every case of every table, no shape at all |
 std::span<const SampleField> sample_fields();
 
 struct SampleOptions {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <new>
 #include <numbers>
 
 namespace hyperiso {
@@ -62,6 +63,29 @@ std::array<double, 3> srgb_of_oklch(double lightness, double chroma, double hue)
   return rgb;
 }
 
+// Replaces red, green and blue of the vertices by the colours of `attribute`.
+ColourRange add_colours(Mesh& mesh, const Attribute& attribute, std::optional<ColourRange> range) {
+  std::vector<double> values;
+  std::visit([&](const auto& stored) { values.assign(stored.begin(), stored.end()); }, attribute.values);
+  if (!range) range = range_of(values);
+
+  std::erase_if(mesh.attributes, [](const Attribute& old) {
+    return old.location == Attribute::Location::vertex &&
+           (old.name == "red" || old.name == "green" || old.name == "blue");
+  });
+  std::array<std::vector<std::int32_t>, 3> channels;
+  for (const double value : values) {
+    const Colour colour = viridis(share_of(value, *range));
+    channels[0].push_back(colour.red);
+    channels[1].push_back(colour.green);
+    channels[2].push_back(colour.blue);
+  }
+  constexpr const char* names[] = {"red", "green", "blue"};
+  for (std::size_t channel = 0; channel < 3; ++channel)
+    mesh.attributes.push_back({names[channel], Attribute::Location::vertex, 1, std::move(channels[channel])});
+  return *range;
+}
+
 } // namespace
 
 Colour viridis(double share) {
@@ -91,25 +115,12 @@ Result<ColourRange> colour_vertices(Mesh& mesh, const std::string& name, std::op
   if (attribute->components != 1)
     return Error{Code::invalid_argument, text("'", name, "' has ", attribute->components,
                                               " components; colours are given by data of one")};
-  std::vector<double> values;
-  std::visit([&](const auto& stored) { values.assign(stored.begin(), stored.end()); }, attribute->values);
-  if (!range) range = range_of(values);
-
-  std::erase_if(mesh.attributes, [](const Attribute& old) {
-    return old.location == Attribute::Location::vertex &&
-           (old.name == "red" || old.name == "green" || old.name == "blue");
-  });
-  std::array<std::vector<std::int32_t>, 3> channels;
-  for (const double value : values) {
-    const Colour colour = viridis(share_of(value, *range));
-    channels[0].push_back(colour.red);
-    channels[1].push_back(colour.green);
-    channels[2].push_back(colour.blue);
+  try {
+    return add_colours(mesh, *attribute, range);
+  } catch (const std::bad_alloc&) {
+    return Error{Code::out_of_memory,
+                 text("not enough memory for the colours of ", mesh.vertex_count(), " vertices")};
   }
-  constexpr const char* names[] = {"red", "green", "blue"};
-  for (std::size_t channel = 0; channel < 3; ++channel)
-    mesh.attributes.push_back({names[channel], Attribute::Location::vertex, 1, std::move(channels[channel])});
-  return *range;
 }
 
 } // namespace hyperiso

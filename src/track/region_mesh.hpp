@@ -28,8 +28,7 @@ inline RegionLevels region_levels(double isovalue, const std::optional<double>& 
   return {*upper, isovalue, inside};
 }
 
-// A vertex of the mesh by the number of an edge of the lifted grid, whose last axis has the two levels: an
-// edge along that axis is the sample itself, one within a layer the crossing with that level.
+// The field lifted by an axis of two levels; nothing is inside of a second one that the region does not have.
 template <class T, int D>
 Samples<D + 1> samples_between(const FieldView<const T, D>& field, const RegionLevels& levels) {
   auto samples = lifted_samples(
@@ -38,6 +37,8 @@ Samples<D + 1> samples_between(const FieldView<const T, D>& field, const RegionL
   return samples;
 }
 
+// A vertex of the mesh has the number of an edge of the lifted grid, whose last axis is that of the levels:
+// an edge along that axis is the sample itself, one within a layer the crossing with that level.
 template <int D>
 std::array<std::int64_t, D + 1> in_layer(const std::array<std::int64_t, D>& sample, std::int64_t layer) {
   std::array<std::int64_t, D + 1> lifted;
