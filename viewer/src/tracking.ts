@@ -27,6 +27,12 @@ function svg<K extends keyof SVGElementTagNameMap>(name: K, attributes: Record<s
   return result;
 }
 
+function titleOf(text: string): SVGTitleElement {
+  const title = svg("title", {});
+  title.textContent = text;
+  return title;
+}
+
 /// Tracks in lanes: the next free lane near those it came from, so that links are short.
 function lanesOf(tracks: readonly Track[]): Map<number, number> {
   const lanes: number[] = []; // when each lane is free again
@@ -118,84 +124,79 @@ function pictureOf(type: string): SVGElement {
   return drawing;
 }
 
-export function buildTracking(app: App): void {
-  const { tracking } = app.metadata;
-  if (!tracking || app.space.timeAxis < 0) return;
-  const tracks = tracking.tracks.filter((track) => !track.simplified);
-  if (tracks.length === 0) return;
-  const host = element("tracking");
-  host.hidden = false;
-  document.body.classList.add("with-tracks");
-  const lanes = lanesOf(tracks);
-  const axis = app.space.axes[app.space.timeAxis]!;
-  const largestVolume = tracks.reduce((largest, track) => Math.max(largest, track.max_volume ?? 0), 0);
-  const height = TOP * 2 + LANE * (Math.max(...lanes.values()) + 1);
-  const drawing = svg("svg", { height, role: "group", "aria-label": "Tracks and events through time" });
-  const now = svg("line", { class: "now", y1: 0, y2: height });
-  const head = headOf(app, tracks);
-  const stale = document.createElement("p");
-  stale.className = "stale";
-  const back = document.createElement("button");
-  Object.assign(back, { type: "button", textContent: `Back to ${app.initial.isovalue}` });
-  back.addEventListener("click", () => app.set({ isovalue: app.initial.isovalue }));
-  stale.append(`Tracks and events are those of isovalue ${app.initial.isovalue}. `, back);
-  host.replaceChildren(head, drawing, stale);
-  const showStale = (): void => {
-    stale.hidden = app.isOwnSurface;
-    head.style.visibility = app.isOwnSurface ? "" : "hidden";
-    drawing.classList.toggle("dimmed", !app.isOwnSurface);
-    drawing.toggleAttribute("inert", !app.isOwnSurface);
-  };
-  showStale();
-  app.onMesh(showStale);
-  const y = (track: number) => TOP + LANE * (lanes.get(track)! + 0.5);
-  let x = (time: number) => time;
+/// The lanes: a ribbon for each track, a glyph for each event that is shown, and the line of the moment.
+class TrackDrawing {
+  readonly svg: SVGSVGElement;
+  private readonly now: SVGLineElement;
+  private readonly lanes: ReadonlyMap<number, number>;
+  private readonly axis: number;
+  private readonly height: number;
+  private readonly largestVolume: number;
+  private x = (time: number): number => time;
 
-  const draw = (): void => {
+  constructor(private readonly app: App, private readonly host: HTMLElement, private readonly tracks: readonly Track[]) {
+    this.lanes = lanesOf(tracks);
+    this.axis = app.space.timeAxis;
+    this.height = TOP * 2 + LANE * (Math.max(...this.lanes.values()) + 1);
+    this.largestVolume = tracks.reduce((largest, track) => Math.max(largest, track.max_volume ?? 0), 0);
+    this.svg = svg("svg", { height: this.height, role: "group", "aria-label": "Tracks and events through time" });
+    this.now = svg("line", { class: "now", y1: 0, y2: this.height });
+  }
+
+  draw(): void {
+    const { app, host, svg: drawing } = this;
     const width = Math.max(120, host.clientWidth);
     // The sides are those of the slider below: where the middle of its handle, 16 wide, stands at either end.
     const slider = element("scrub").getBoundingClientRect();
     const side = slider.left - host.getBoundingClientRect().left + 8;
-    x = (time) => side + ((slider.width - 16) * (time - axis.minimum)) / (axis.maximum - axis.minimum || 1);
+    const { minimum, maximum } = app.space.axes[this.axis]!;
+    this.x = (time) => side + ((slider.width - 16) * (time - minimum)) / (maximum - minimum || 1);
     drawing.replaceChildren();
-    drawing.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    for (const event of app.allEvents) drawLinks(event);
-    const shown = app.chosenEvents().filter((event) => [...event.in, ...event.out].some((id) => lanes.has(id)));
-    const named = namedOf(shown);
-    for (const track of tracks) drawing.append(lane(track, shown.map((event) => extentOf(event, named.has(event)))));
+    drawing.setAttribute("viewBox", `0 0 ${width} ${this.height}`);
+    for (const event of app.allEvents) this.drawLinks(event);
+    const shown = app.chosenEvents().filter((event) => [...event.in, ...event.out].some((id) => this.lanes.has(id)));
+    const named = this.namedOf(shown);
+    const extents = shown.map((event) => this.extentOf(event, named.has(event)));
+    for (const track of this.tracks) drawing.append(this.lane(track, extents));
     const byWeight = [...shown].sort((a, b) => Number(isMinor(b.type)) - Number(isMinor(a.type)));
-    for (const event of byWeight) drawing.append(glyph(event, named.has(event)));
-    drawing.append(now);
-    moveNow();
-  };
-  const moveNow = (): void => {
-    const shown = app.axis === app.space.timeAxis;
-    now.style.display = shown ? "" : "none";
-    const at = shown ? x(app.toPosition(app.state.offset)) : 0;
-    now.setAttribute("x1", String(at));
-    now.setAttribute("x2", String(at));
-  };
-  const drawLinks = (event: TrackEvent): void => {
+    for (const event of byWeight) drawing.append(this.glyph(event, named.has(event)));
+    drawing.append(this.now);
+    this.moveNow();
+  }
+  moveNow(): void {
+    const shown = this.app.axis === this.axis;
+    this.now.style.display = shown ? "" : "none";
+    const at = shown ? this.x(this.app.toPosition(this.app.state.offset)) : 0;
+    this.now.setAttribute("x1", String(at));
+    this.now.setAttribute("x2", String(at));
+  }
+  showChosen(track: number): void {
+    for (const one of this.svg.querySelectorAll(".lane"))
+      one.classList.toggle("chosen", Number(one.getAttribute("data-track")) === track);
+  }
+
+  private y(track: number): number {
+    return TOP + LANE * (this.lanes.get(track)! + 0.5);
+  }
+  private drawLinks(event: TrackEvent): void {
     for (const from of event.in)
       for (const to of event.out) {
-        if (from === to || !lanes.has(from) || !lanes.has(to)) continue;
-        const at = x(event.time);
-        drawing.append(svg("path", { class: "link", d: `M${at} ${y(from)} L${at} ${y(to)}` }));
+        if (from === to || !this.lanes.has(from) || !this.lanes.has(to)) continue;
+        const at = this.x(event.time);
+        this.svg.append(svg("path", { class: "link", d: `M${at} ${this.y(from)} L${at} ${this.y(to)}` }));
       }
-  };
+  }
 
-  const lane = (track: Track, extents: readonly Extent[]): SVGElement => {
-    const group = svg("g", { class: "lane", tabindex: 0, role: "button", "data-track": track.id,
-      "aria-label": `Track ${track.id}, ${app.positionText(app.space.timeAxis, track.start_time)} to ${app.positionText(app.space.timeAxis, track.end_time)}` });
-    const begin = x(track.start_time), end = Math.max(x(track.end_time), begin + 2);
-    group.append(svg("path", { d: ribbon(track, begin, end), fill: labelColour(track.id) }));
-    const title = svg("title", {});
-    title.textContent = group.getAttribute("aria-label");
-    group.append(title);
+  private lane(track: Track, extents: readonly Extent[]): SVGElement {
+    const { app, axis } = this;
+    const label = `Track ${track.id}, ${app.positionText(axis, track.start_time)} to ${app.positionText(axis, track.end_time)}`;
+    const group = svg("g", { class: "lane", tabindex: 0, role: "button", "data-track": track.id, "aria-label": label });
+    const begin = this.x(track.start_time), end = Math.max(this.x(track.end_time), begin + 2), middle = this.y(track.id);
+    group.append(svg("path", { d: this.ribbon(track, begin, end), fill: labelColour(track.id) }), titleOf(label));
     const text = `track ${track.id}`;
-    const place = freePlace(begin + 8, LETTER * text.length, extents.filter((one) => one.lane === y(track.id)));
+    const place = freePlace(begin + 8, LETTER * text.length, extents.filter((one) => one.lane === middle));
     if (place + LETTER * text.length < end - 8) {
-      const name = svg("text", { x: place, y: y(track.id) + 4 });
+      const name = svg("text", { x: place, y: middle + 4 });
       name.textContent = text;
       group.append(name);
     }
@@ -206,67 +207,102 @@ export function buildTracking(app: App): void {
     group.addEventListener("blur", () => light(false));
     group.addEventListener("click", () => app.moveToTime(Math.max(track.start_time, Math.min(track.end_time, app.time))));
     return group;
-  };
+  }
   /// A bar, or a band as wide as the track is large at each step.
-  const ribbon = (track: Track, begin: number, end: number): string => {
-    const middle = y(track.id);
-    const half = (volume: number | undefined) => volume === undefined || !largestVolume ? 3.5 : 1.5 + 5.5 * Math.sqrt(volume / largestVolume);
+  private ribbon(track: Track, begin: number, end: number): string {
+    const middle = this.y(track.id), largest = this.largestVolume;
+    const half = (volume: number | undefined) => (volume === undefined || !largest ? 3.5 : 1.5 + 5.5 * Math.sqrt(volume / largest));
     const steps = track.volumes ?? [];
     if (steps.length < 2) {
       const h = half(track.max_volume);
       return `M${begin} ${middle - h}H${end}V${middle + h}H${begin}z`;
     }
-    const upper = steps.map(([time, volume]) => `${x(time)} ${middle - half(volume)}`);
-    const lower = [...steps].reverse().map(([time, volume]) => `${x(time)} ${middle + half(volume)}`);
+    const upper = steps.map(([time, volume]) => `${this.x(time)} ${middle - half(volume)}`);
+    const lower = [...steps].reverse().map(([time, volume]) => `${this.x(time)} ${middle + half(volume)}`);
     return `M${begin} ${middle}L${upper.join("L")}L${end} ${middle}L${lower.join("L")}z`;
-  };
+  }
+
   /// The track beside which an event that has one in a lane stands.
-  const trackOf = (event: TrackEvent): number => [...event.out, ...event.in].find((id) => lanes.has(id))!;
+  private trackOf(event: TrackEvent): number {
+    return [...event.out, ...event.in].find((id) => this.lanes.has(id))!;
+  }
+  /// 1: the name stands to the right of the glyph; -1: to the left, at the end of the line.
+  private sideOf(event: TrackEvent): 1 | -1 {
+    return this.x(event.time) < this.svg.clientWidth - 80 ? 1 : -1;
+  }
   /// What a glyph takes up of its lane, with its name or without.
-  const extentOf = (event: TrackEvent, named: boolean): Extent => {
-    const at = x(event.time), name = named ? NAME + LETTER * event.type.length : 0;
-    return { lane: y(trackOf(event)), low: at - Math.max(GLYPH, sideOf(event) < 0 ? name : 0), high: at + Math.max(GLYPH, sideOf(event) > 0 ? name : 0) };
-  };
+  private extentOf(event: TrackEvent, named: boolean): Extent {
+    const at = this.x(event.time), name = named ? NAME + LETTER * event.type.length : 0, side = this.sideOf(event);
+    return { lane: this.y(this.trackOf(event)), low: at - Math.max(GLYPH, side < 0 ? name : 0), high: at + Math.max(GLYPH, side > 0 ? name : 0) };
+  }
   /// The events, few enough, whose name has room beside their glyph.
-  const namedOf = (shown: readonly TrackEvent[]): Set<TrackEvent> => {
+  private namedOf(shown: readonly TrackEvent[]): Set<TrackEvent> {
     const named = new Set<TrackEvent>();
     if (shown.length <= MOST_NAMED)
       for (const event of shown) {
-        const others = shown.filter((other) => other !== event).map((other) => extentOf(other, named.has(other)));
-        if (!others.some((other) => meet(other, extentOf(event, true)))) named.add(event);
+        const others = shown.filter((other) => other !== event).map((other) => this.extentOf(other, named.has(other)));
+        if (!others.some((other) => meet(other, this.extentOf(event, true)))) named.add(event);
       }
     return named;
-  };
-  /// 1: the name stands to the right of the glyph; -1: to the left, at the end of the line.
-  const sideOf = (event: TrackEvent): 1 | -1 => (x(event.time) < drawing.clientWidth - 80 ? 1 : -1);
-  const glyph = (event: TrackEvent, named: boolean): SVGElement => {
-    const at = y(trackOf(event));
+  }
+  private glyph(event: TrackEvent, named: boolean): SVGElement {
+    const { app } = this;
     const label = eventText(app, event);
     // By the keyboard one goes from event to event, instead of through all of them to the time line.
-    const group = svg("g", { class: isMinor(event.type) ? "glyph minor" : "glyph", transform: `translate(${x(event.time)} ${at})`, tabindex: -1, role: "button", "aria-label": label, "data-event": event.type });
-    const title = svg("title", {});
-    title.textContent = label;
-    group.append(glyphOf(event.type), title);
+    const group = svg("g", { class: isMinor(event.type) ? "glyph minor" : "glyph", role: "button", tabindex: -1, "aria-label": label,
+      transform: `translate(${this.x(event.time)} ${this.y(this.trackOf(event))})`, "data-event": event.type });
+    group.append(glyphOf(event.type), titleOf(label));
     if (named) {
-      const side = sideOf(event);
+      const side = this.sideOf(event);
       const name = svg("text", { x: 9 * side, y: 4, "text-anchor": side > 0 ? "start" : "end" });
       name.textContent = event.type;
       group.append(name);
     }
     group.addEventListener("click", () => app.showEvent(event));
     group.addEventListener("keydown", (key) => {
-      if ((key as KeyboardEvent).key === "Enter" || (key as KeyboardEvent).key === " ") app.showEvent(event);
+      if (key.key === "Enter" || key.key === " ") app.showEvent(event);
     });
     return group;
-  };
+  }
+}
 
-  app.onChange((state, changed) => {
-    if (changed.has("hide")) draw();
-    if (changed.has("offset") || changed.has("frame")) moveNow();
-    if (changed.has("highlight"))
-      for (const one of drawing.querySelectorAll(".lane"))
-        one.classList.toggle("chosen", Number(one.getAttribute("data-track")) === state.highlight);
+/// What stands below the lanes where another isovalue is shown; calls `show` whenever that may have changed.
+function staleNote(app: App, show: (own: boolean) => void): HTMLElement {
+  const note = document.createElement("p");
+  note.className = "stale";
+  const back = document.createElement("button");
+  Object.assign(back, { type: "button", textContent: `Back to ${app.initial.isovalue}` });
+  back.addEventListener("click", () => app.set({ isovalue: app.initial.isovalue }));
+  note.append(`Tracks and events are those of isovalue ${app.initial.isovalue}. `, back);
+  const update = (): void => {
+    note.hidden = app.isOwnSurface;
+    show(app.isOwnSurface);
+  };
+  update();
+  app.onMesh(update);
+  return note;
+}
+
+export function buildTracking(app: App): void {
+  const { tracking } = app.metadata;
+  if (!tracking || app.space.timeAxis < 0) return;
+  const tracks = tracking.tracks.filter((track) => !track.simplified);
+  if (tracks.length === 0) return;
+  const host = element("tracking");
+  host.hidden = false;
+  document.body.classList.add("with-tracks");
+  const head = headOf(app, tracks), drawing = new TrackDrawing(app, host, tracks);
+  const note = staleNote(app, (own) => {
+    head.style.visibility = own ? "" : "hidden";
+    drawing.svg.classList.toggle("dimmed", !own);
+    drawing.svg.toggleAttribute("inert", !own);
   });
-  new ResizeObserver(draw).observe(host);
-  draw();
+  host.replaceChildren(head, drawing.svg, note);
+  app.onChange((state, changed) => {
+    if (changed.has("hide")) drawing.draw();
+    if (changed.has("offset") || changed.has("frame")) drawing.moveNow();
+    if (changed.has("highlight")) drawing.showChosen(state.highlight);
+  });
+  new ResizeObserver(() => drawing.draw()).observe(host);
+  drawing.draw();
 }
