@@ -91,121 +91,146 @@ struct Slices {
   std::map<std::uint64_t, Piece> pieces;
 };
 
-// One line for each event: what it is, when, and what the components that end there began with.
+// What happens to the slices of a mesh whose last axis is time, in steps.
 template <int D>
-std::multiset<std::string> history_of(const Mesh& mesh, const std::array<std::int64_t, D>& dims) {
-  const auto position = [&](std::uint64_t vertex, std::size_t axis) {
-    return mesh.positions[vertex * D + axis];
+class History {
+ public:
+  History(const Mesh& mesh, const std::array<std::int64_t, D>& dims)
+      : mesh_(mesh), dims_(dims), times_(times_of(mesh)), complex_(mesh, times_),
+        last_step_(static_cast<double>(dims[D - 1] - 1)) {
+    for (const auto& edge : complex_.faces[1]) number_.emplace(edge, times_.size() + number_.size());
+  }
+
+  // One line for each event: what it is, when, and what the components that end there began with.
+  std::multiset<std::string> lines() const {
+    const std::set<double> moments(times_.begin(), times_.end());
+    std::multiset<std::string> lines;
+    std::map<std::uint64_t, std::string> origin_before; // of each component just before the moment
+    std::optional<Slices> before;
+    for (auto moment = moments.begin(); moment != moments.end(); ++moment) {
+      std::optional<Slices> after;
+      if (std::next(moment) != moments.end())
+        after.emplace(complex_, *moment, *std::next(moment), [&](auto vertex) { return on_layer(vertex); });
+      std::map<std::uint64_t, std::string> origin_after;
+      for (const auto& [root, node] : nodes_at(*moment, before, after)) {
+        if (node.in.size() + node.out.size() == 0) continue;
+        const Piece change = change_at(node, before, after);
+        const std::string type = type_of(node, change, *moment);
+        if (type.empty()) {
+          origin_after[*node.out.begin()] = origin_before.at(*node.in.begin());
+          continue;
+        }
+        char event[80];
+        std::snprintf(event, sizeof event, "%s %.9f %+d", type.c_str(), *moment,
+                      type.starts_with("open") ? 0 : static_cast<int>(change.euler));
+        for (const auto component : node.out) origin_after[component] = event;
+        std::multiset<std::string> origins;
+        for (const auto component : node.in) origins.insert(origin_before.at(component));
+        std::string line = event + (" out " + std::to_string(node.out.size())) + " in";
+        for (const auto& origin : origins) line += " (" + origin + ")";
+        lines.insert(line);
+      }
+      origin_before = std::move(origin_after);
+      before = std::move(after);
+    }
+    return lines;
+  }
+
+ private:
+  // A component of the closed level, and those of the slices before and after that it belongs to.
+  struct Node {
+    std::set<std::uint64_t> in, out;
+    bool all_on_wall = true;
   };
-  std::vector<double> times;
-  for (std::size_t vertex = 0; vertex < mesh.vertex_count(); ++vertex)
-    times.push_back(position(vertex, D - 1));
-  const Complex complex(mesh, times);
-  const auto last_step = static_cast<double>(dims[D - 1] - 1);
-  const auto on_layer = [&](std::uint64_t vertex) {
-    return times[vertex] == 0 || times[vertex] == last_step;
-  };
-  const auto on_wall = [&](std::uint64_t vertex) {
+
+  static std::vector<double> times_of(const Mesh& mesh) {
+    std::vector<double> times;
+    for (std::size_t vertex = 0; vertex < mesh.vertex_count(); ++vertex)
+      times.push_back(mesh.positions[vertex * D + D - 1]);
+    return times;
+  }
+  bool on_layer(std::uint64_t vertex) const { return times_[vertex] == 0 || times_[vertex] == last_step_; }
+  bool on_wall(std::uint64_t vertex) const {
     for (std::size_t axis = 0; axis + 1 < D; ++axis)
-      if (position(vertex, axis) == 0 || position(vertex, axis) == static_cast<double>(dims[axis] - 1))
+      if (const double x = mesh_.positions[vertex * D + axis];
+          x == 0 || x == static_cast<double>(dims_[axis] - 1))
         return true;
     return false;
-  };
+  }
 
-  std::set<double> moments(times.begin(), times.end());
-  std::multiset<std::string> history;
-  std::map<std::uint64_t, std::string> origin_before; // of each component just before the moment
-  std::optional<Slices> before;
-  for (auto moment = moments.begin(); moment != moments.end(); ++moment) {
-    std::optional<Slices> after;
-    if (std::next(moment) != moments.end()) after.emplace(complex, *moment, *std::next(moment), on_layer);
-
-    // Components of the closed level: vertices at the moment and pieces of faces that cross it.
-    UnionFind level(times.size() + complex.faces[1].size());
-    std::map<Complex::Corners, std::uint64_t> number;
-    for (const auto& edge : complex.faces[1]) number.emplace(edge, times.size() + number.size());
-    std::vector<bool> present(times.size() + complex.faces[1].size());
-    for (const auto& simplex : complex.faces.back()) {
+  // By their roots. Points of the level are vertices at the moment and pieces of edges that cross it.
+  std::map<std::uint64_t, Node> nodes_at(double moment, const std::optional<Slices>& before,
+                                         const std::optional<Slices>& after) const {
+    UnionFind level(times_.size() + number_.size());
+    std::vector<bool> present(times_.size());
+    for (const auto& simplex : complex_.faces.back()) {
       std::vector<std::uint64_t> points;
       for (std::size_t i = 0; i < simplex.size(); ++i) {
-        if (times[simplex[i]] == *moment) points.push_back(simplex[i]);
+        if (times_[simplex[i]] == moment) {
+          points.push_back(simplex[i]);
+          present[simplex[i]] = true;
+        }
         for (std::size_t j = i + 1; j < simplex.size(); ++j)
-          if (const auto [first, last] = complex.range({simplex[i], simplex[j]});
-              first < *moment && last > *moment)
-            points.push_back(number.at({simplex[i], simplex[j]}));
+          if (const auto [first, last] = complex_.range({simplex[i], simplex[j]});
+              first < moment && last > moment)
+            points.push_back(number_.at({simplex[i], simplex[j]}));
       }
-      for (const auto point : points) level.unite(points[0], point), present[point] = true;
+      for (const auto point : points) level.unite(points[0], point);
     }
 
-    struct Node {
-      std::set<std::uint64_t> in, out;
-      bool all_on_wall = true;
-    };
     std::map<std::uint64_t, Node> nodes;
-    for (std::uint64_t vertex = 0; vertex < times.size(); ++vertex)
+    for (std::uint64_t vertex = 0; vertex < times_.size(); ++vertex)
       if (present[vertex]) nodes[level.find(vertex)].all_on_wall &= on_wall(vertex);
     const auto attach = [&](const std::optional<Slices>& slices, auto member) {
       if (!slices) return;
       for (const auto& [edge, component] : slices->component) {
-        const auto point = times[edge[0]] == *moment   ? edge[0]
-                           : times[edge[1]] == *moment ? edge[1]
-                                                       : number.at(edge);
+        const auto point = times_[edge[0]] == moment   ? edge[0]
+                           : times_[edge[1]] == moment ? edge[1]
+                                                       : number_.at(edge);
         (nodes[level.find(point)].*member).insert(component);
       }
     };
     attach(before, &Node::in);
     attach(after, &Node::out);
-
-    std::map<std::uint64_t, std::string> origin_after;
-    for (const auto& [root, node] : nodes) {
-      Piece change;
-      for (const auto component : node.out)
-        change.euler += after->pieces[component].euler, change.rims += after->pieces[component].rims;
-      for (const auto component : node.in)
-        change.euler -= before->pieces[component].euler, change.rims -= before->pieces[component].rims;
-      std::string type;
-      const auto m = node.in.size(), n = node.out.size();
-      if (*moment == 0)
-        type = "open_start";
-      else if (*moment == last_step)
-        type = "open_end";
-      else if (m == 0 && n == 1)
-        type = node.all_on_wall ? "enter" : "birth";
-      else if (m == 1 && n == 0)
-        type = node.all_on_wall ? "exit" : "death";
-      else if (m == 1 && n == 1)
-        type = (D == 4 || complex.region) && change.euler + change.rims != 0 ? "genus"
-               : change.euler != 0 || (D == 4 && change.rims != 0)           ? "touch"
-                                                                             : "";
-      else
-        type = n == 1 ? "merge" : m == 1 ? "split" : "compound";
-      if (m + n == 0) continue;
-      if (type.empty()) {
-        origin_after[*node.out.begin()] = origin_before.at(*node.in.begin());
-        continue;
-      }
-      char line[80];
-      std::snprintf(line, sizeof line, "%s %.9f %+d", type.c_str(), *moment,
-                    type.starts_with("open") ? 0 : static_cast<int>(change.euler));
-      for (const auto component : node.out) origin_after[component] = line;
-      std::multiset<std::string> origins;
-      for (const auto component : node.in) origins.insert(origin_before.at(component));
-      std::string text = line + (" out " + std::to_string(n)) + " in";
-      for (const auto& origin : origins) text += " (" + origin + ")";
-      history.insert(text);
-    }
-    origin_before = std::move(origin_after);
-    before = std::move(after);
+    return nodes;
   }
-  return history;
-}
+
+  static Piece change_at(const Node& node, const std::optional<Slices>& before,
+                         const std::optional<Slices>& after) {
+    Piece change;
+    for (const auto component : node.out)
+      change.euler += after->pieces.at(component).euler, change.rims += after->pieces.at(component).rims;
+    for (const auto component : node.in)
+      change.euler -= before->pieces.at(component).euler, change.rims -= before->pieces.at(component).rims;
+    return change;
+  }
+
+  // Empty where nothing happens.
+  std::string type_of(const Node& node, const Piece& change, double moment) const {
+    const auto m = node.in.size(), n = node.out.size();
+    if (moment == 0) return "open_start";
+    if (moment == last_step_) return "open_end";
+    if (m == 0 && n == 1) return node.all_on_wall ? "enter" : "birth";
+    if (m == 1 && n == 0) return node.all_on_wall ? "exit" : "death";
+    if (m != 1 || n != 1) return n == 1 ? "merge" : m == 1 ? "split" : "compound";
+    if ((D == 4 || complex_.region) && change.euler + change.rims != 0) return "genus";
+    return change.euler != 0 || (D == 4 && change.rims != 0) ? "touch" : "";
+  }
+
+  const Mesh& mesh_;
+  const std::array<std::int64_t, D> dims_;
+  const std::vector<double> times_;
+  const Complex complex_;
+  const double last_step_;
+  std::map<Complex::Corners, std::uint64_t> number_; // of each edge, behind those of the vertices
+};
 
 template <class T, int D>
 std::multiset<std::string> brute_force_history(const FieldView<const T, D>& field,
                                                const ExtractOptions& extraction) {
   ExtractOptions options = extraction;
   options.precision = Precision::f64;
-  return history_of<D>(*extract(field, 0, options), field.dims());
+  return History<D>(*extract(field, 0, options), field.dims()).lines();
 }
 
 std::multiset<std::string> tracked_history(const TrackingGraph& graph) {
@@ -328,7 +353,7 @@ void compare_region(const std::array<std::int64_t, D>& dims, int range, unsigned
   volume.precision = Precision::f64;
   const auto mesh = interval(field.view, 0, upper.value_or(2 * range + 0.7), volume);
   EXPECT_EQ(tracked_history(track_field(time_field<float, D>(field), 0, options)),
-            history_of<D>(*mesh, field.view.dims()))
+            History<D>(*mesh, field.view.dims()).lines())
       << "seed " << seed << ", samples up to " << range;
 }
 

@@ -41,18 +41,18 @@ void expect_oriented(const VolumeMesh<D>& volume) {
   EXPECT_LE(wrong, surface->simplex_count() / 50); // those that fold
 }
 
-TEST(PageLevels, LiftedVolumesAreOriented) {
+TEST(PageLevels, lifted_volumes_are_oriented) {
   expect_oriented(blob_levels<3>({14, 13, 12}));
   expect_oriented(blob_levels<2>({40, 41}));
 }
 
-TEST(PageLevels, TheAxisHasTheLevelsAsSamples) {
+TEST(PageLevels, the_axis_has_the_levels_as_samples) {
   const Axis axis = isovalue_axis(blob_levels<3>({14, 13, 12}));
   EXPECT_EQ(axis.count, 3);
   EXPECT_EQ(axis.coordinates, (std::vector<double>{0.3, 0.45, 0.7}));
 }
 
-TEST(PageLevels, AVolumeWithoutIsovaluesIsRefused) {
+TEST(PageLevels, a_volume_without_isovalues_is_refused) {
   VolumeMesh<3> volume = blob_levels<3>({14, 13, 12});
   volume.attributes.clear();
   EXPECT_FALSE(lifted(volume));

@@ -108,26 +108,26 @@ void check(std::array<std::int64_t, D> dims, double isovalue, bool special, bool
       }
 }
 
-TEST(PageSamples, SmallIntegersGiveTheSameSurfaceToTheBit) {
+TEST(PageSamples, small_integers_give_the_same_surface_to_the_bit) {
   check<std::uint8_t, 3>({17, 9, 8}, 3, false, false);
   check<std::int8_t, 4>({9, 5, 4, 7}, 2.5, false, false);
   check<std::uint16_t, 4>({8, 2, 6, 5}, 4, false, false);
   check<std::int16_t, 3>({70, 3, 2}, 0.5, false, false);
 }
 
-TEST(PageSamples, RoundedSamplesGiveTheSameSimplices) {
+TEST(PageSamples, rounded_samples_give_the_same_simplices) {
   check<float, 3>({17, 9, 8}, 2.2, false, true);
   check<double, 4>({9, 5, 4, 7}, 1.4625, false, true);
   check<std::int32_t, 3>({12, 11, 5}, 3, false, true);
 }
 
-TEST(PageSamples, MissingAndInfiniteSamplesStayWhatTheyAre) {
+TEST(PageSamples, missing_and_infinite_samples_stay_what_they_are) {
   check<float, 3>({17, 9, 8}, 2.2, true, true);
   check<double, 4>({9, 5, 4, 7}, 0.75, true, true);
 }
 
 // A sample that equals the isovalue is on its side by the rule, not by rounding.
-TEST(PageSamples, TheIsovalueOfASampleIsACode) {
+TEST(PageSamples, the_isovalue_of_a_sample_is_a_code) {
   for (const Inside inside : {Inside::above, Inside::below}) {
     const Field field = random_field<float, 3>({17, 9, 8}, 5, false);
     const double isovalue = static_cast<double>(field.view<float, 3>().samples[0]);
@@ -137,7 +137,7 @@ TEST(PageSamples, TheIsovalueOfASampleIsACode) {
   }
 }
 
-TEST(PageSamples, ABandKeepsLittleOfASmoothField) {
+TEST(PageSamples, a_band_keeps_little_of_a_smooth_field) {
   FieldInfo info;
   for (int axis = 0; axis < 3; ++axis) info.axes.push_back({.count = 40});
   NewField made = *allocate_field(info);
@@ -153,7 +153,7 @@ TEST(PageSamples, ABandKeepsLittleOfASmoothField) {
   EXPECT_LT(layers.scale().step * 65535, 8);
 }
 
-TEST(PageSamples, NothingCrossesGivesNothing) {
+TEST(PageSamples, nothing_crosses_gives_nothing) {
   const Field field = random_field<float, 3>({9, 9, 9}, 1, false);
   for (const double isovalue : {-5.0, 50.0})
     for (const bool band : {true, false}) {
@@ -163,7 +163,7 @@ TEST(PageSamples, NothingCrossesGivesNothing) {
 }
 
 // The step of codes must be a number whatever the range of the samples.
-TEST(PageSamples, ExtremeRanges) {
+TEST(PageSamples, extreme_ranges) {
   for (const auto& [low, high] : {std::pair{-1.7e308, 1.7e308}, std::pair{5e-324, 1e-323}}) {
     FieldInfo info;
     info.type = SampleType::f64;
@@ -180,7 +180,7 @@ TEST(PageSamples, ExtremeRanges) {
 }
 
 // A damaged page must say so, not read past its bytes.
-TEST(PageSamples, BytesOfAnotherLengthAreRefused) {
+TEST(PageSamples, bytes_of_another_length_are_refused) {
   const Field field = random_field<float, 3>({17, 9, 8}, 1, false);
   const SampleLayers packed = pack_field(field, 2.2, Inside::above, true);
   std::vector<unsigned char> bytes = packed.encode(0, 8);
