@@ -94,7 +94,7 @@ Decoded decoded(const Mesh& mesh, const Payload& payload,
 }
 
 // A lost, doubled or turned simplex would be a hole, or a wrong normal, on the page.
-TEST(view_payload, gives_back_every_simplex_with_its_orientation) {
+TEST(PagePayload, gives_back_every_simplex_with_its_orientation) {
   const Surface surface = blobs();
   const Payload payload(surface.mesh, quantisers_of(surface.axes), true);
   const Decoded page = decoded(surface.mesh, payload);
@@ -120,7 +120,7 @@ TEST(view_payload, gives_back_every_simplex_with_its_orientation) {
 }
 
 // Blocks share vertices: numbers have to run on from one to the next.
-TEST(view_payload, several_blocks_share_vertices) {
+TEST(PagePayload, several_blocks_share_vertices) {
   SampleOptions options;
   options.dims = {34, 34, 34, 16};
   const Field field = *make_sample("gyroid", options);
@@ -137,7 +137,7 @@ TEST(view_payload, several_blocks_share_vertices) {
 }
 
 // A slice at a stored step has to be that step's surface, not one a rounding error away.
-TEST(view_payload, samples_of_even_axes_fall_on_whole_levels) {
+TEST(PagePayload, samples_of_even_axes_fall_on_whole_levels) {
   for (const std::int64_t count : {2, 41, 1000, 65536}) {
     Axis axis;
     axis.count = count;
@@ -153,7 +153,7 @@ TEST(view_payload, samples_of_even_axes_fall_on_whole_levels) {
 }
 
 // Playing through time redraws few chunks only if each holds simplices of one moment.
-TEST(view_payload, a_chunk_lies_in_one_step_of_time_or_where_two_meet) {
+TEST(PagePayload, a_chunk_lies_in_one_step_of_time_or_where_two_meet) {
   const Surface surface = blobs();
   const Payload payload(surface.mesh, quantisers_of(surface.axes), true);
   const Decoded page = decoded(surface.mesh, payload);
@@ -173,7 +173,7 @@ TEST(view_payload, a_chunk_lies_in_one_step_of_time_or_where_two_meet) {
   EXPECT_GT(chunks, 5 * crossing);
 }
 
-TEST(view_payload, attributes_keep_their_values_per_vertex) {
+TEST(PagePayload, attributes_keep_their_values_per_vertex) {
   Surface surface = blobs();
   const std::size_t vertices = surface.mesh.vertex_count(), simplices = surface.mesh.simplex_count();
   Attribute height{"height", Attribute::Location::vertex, 1, std::vector<float>(vertices)};
@@ -198,7 +198,7 @@ TEST(view_payload, attributes_keep_their_values_per_vertex) {
 }
 
 // NaN and infinities in an attribute must not spread to what can be shown.
-TEST(view_payload, attributes_that_are_not_finite_leave_the_range_alone) {
+TEST(PagePayload, attributes_that_are_not_finite_leave_the_range_alone) {
   Surface surface = blobs();
   std::vector<double> values(surface.mesh.vertex_count(), 2.0);
   values[0] = std::numeric_limits<double>::quiet_NaN();
@@ -211,7 +211,7 @@ TEST(view_payload, attributes_that_are_not_finite_leave_the_range_alone) {
   EXPECT_EQ(encoded.levels[1], 65535);
 }
 
-TEST(view_payload, an_axis_without_samples_spans_the_mesh) {
+TEST(PagePayload, an_axis_without_samples_spans_the_mesh) {
   const Quantiser quantiser = quantiser_of(Axis{}, -2, 3);
   EXPECT_EQ(quantiser.level(-2), 0);
   EXPECT_EQ(quantiser.level(3), 65535);
@@ -253,7 +253,7 @@ void expect_tracks_of_steps(const Field& field, double isovalue) {
   EXPECT_LT(without, tracks.size() / 10);
 }
 
-TEST(view_tracks, those_at_steps_are_those_of_the_steps) {
+TEST(PageTracks, those_at_steps_are_those_of_the_steps) {
   SampleOptions options;
   options.dims = {16, 15, 14, 9};
   expect_tracks_of_steps<4>(*make_sample("gaussians", options), 0.5);
@@ -301,7 +301,7 @@ std::vector<std::int32_t> tracks_of_regions(const Field& field, double isovalue,
 }
 
 // The two surfaces of a shell bound one region; a ball in its middle is another.
-TEST(view_tracks, walls_of_a_cavity_go_by_the_region_around_it) {
+TEST(PageTracks, walls_of_a_cavity_go_by_the_region_around_it) {
   const Field shell = field_of({17, 17, 17, 3}, [](const std::vector<double>& at) {
     const double radius = std::hypot(at[0], at[1], at[2]) - 0.05 * at[3];
     return std::max(0.2 - std::abs(radius - 0.65), 0.2 - radius);
@@ -370,7 +370,7 @@ class InsideOfStep {
   std::vector<std::int32_t> body_;
 };
 
-TEST(view_tracks, those_of_regions_are_those_of_what_hangs_together_inside) {
+TEST(PageTracks, those_of_regions_are_those_of_what_hangs_together_inside) {
   SampleOptions options;
   options.dims = {11, 10, 9, 5};
   const Field field = *make_sample("noise", options);
@@ -397,7 +397,7 @@ TEST(view_tracks, those_of_regions_are_those_of_what_hangs_together_inside) {
   }
 }
 
-TEST(view_tracks, regions_between_two_isovalues_have_no_one_surface) {
+TEST(PageTracks, regions_between_two_isovalues_have_no_one_surface) {
   SampleOptions options;
   options.dims = {6, 6, 6, 3};
   FieldSteps steps(*make_sample("gaussians", options));
@@ -410,13 +410,13 @@ TEST(view_tracks, regions_between_two_isovalues_have_no_one_surface) {
   EXPECT_EQ(status.error().code, Code::invalid_argument);
 }
 
-TEST(view_tracks, without_edges_there_are_none) {
+TEST(PageTracks, without_edges_there_are_none) {
   Surface surface = blobs();
   surface.mesh.edges = {};
   for (const std::int32_t label : tracks_of_vertices(surface.mesh, {})) ASSERT_EQ(label, -1);
 }
 
-class view_page : public testing::Test {
+class WrittenPage : public testing::Test {
  protected:
   void SetUp() override {
     if (!has_viewer()) GTEST_SKIP() << "built without the viewer";
@@ -425,7 +425,7 @@ class view_page : public testing::Test {
 };
 
 // A name from a file must never become a part of the page's code.
-TEST_F(view_page, names_cannot_end_a_script) {
+TEST_F(WrittenPage, names_cannot_end_a_script) {
   const Surface surface = blobs();
   PageOptions options;
   options.axes = surface.axes;
@@ -440,7 +440,7 @@ TEST_F(view_page, names_cannot_end_a_script) {
   EXPECT_NE(page.find("<title>&lt;b>&amp;amp;</title>"), std::string::npos);
 }
 
-TEST_F(view_page, the_same_surface_gives_the_same_bytes) {
+TEST_F(WrittenPage, the_same_surface_gives_the_same_bytes) {
   const Surface surface = blobs();
   PageOptions options;
   options.axes = surface.axes;
@@ -450,7 +450,7 @@ TEST_F(view_page, the_same_surface_gives_the_same_bytes) {
   EXPECT_EQ(content_of(folder / "a.html"), content_of(folder / "b.html"));
 }
 
-TEST_F(view_page, refers_to_nothing_outside) {
+TEST_F(WrittenPage, refers_to_nothing_outside) {
   const Surface surface = blobs();
   ASSERT_TRUE(write_page(surface.mesh, {}, folder / "page.html"));
   const std::string page = content_of(folder / "page.html");
@@ -458,7 +458,7 @@ TEST_F(view_page, refers_to_nothing_outside) {
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
 }
 
-TEST_F(view_page, one_that_would_be_too_large_leaves_nothing) {
+TEST_F(WrittenPage, one_that_would_be_too_large_leaves_nothing) {
   const Surface surface = blobs();
   PageOptions options;
   options.size_limit = 700'000;
@@ -469,7 +469,7 @@ TEST_F(view_page, one_that_would_be_too_large_leaves_nothing) {
   EXPECT_TRUE(folder.names().empty());
 }
 
-TEST_F(view_page, a_cancelled_one_leaves_nothing) {
+TEST_F(WrittenPage, a_cancelled_one_leaves_nothing) {
   const Surface surface = blobs();
   PageOptions options;
   options.progress = [](double) { return false; };
@@ -479,12 +479,12 @@ TEST_F(view_page, a_cancelled_one_leaves_nothing) {
   EXPECT_TRUE(folder.names().empty());
 }
 
-TEST_F(view_page, an_empty_surface_is_a_page_all_the_same) {
+TEST_F(WrittenPage, an_empty_surface_is_a_page_all_the_same) {
   ASSERT_TRUE(write_page(SimplexMesh<4>(), {}, folder / "page.html"));
   EXPECT_NE(content_of(folder / "page.html").find("\"simplices\":0"), std::string::npos);
 }
 
-TEST_F(view_page, meshes_it_cannot_show_are_refused) {
+TEST_F(WrittenPage, meshes_it_cannot_show_are_refused) {
   for (const Mesh& mesh : {Mesh(2, 1), Mesh(3, 3), Mesh(4, 2)}) {
     const Status status = write_page(mesh, {}, folder / "page.html");
     ASSERT_FALSE(status);
