@@ -3,9 +3,14 @@
     test_cli_track.py PROGRAM
 """
 
+import os
+import resource
+import signal
+import subprocess
+import time
 import unittest
 
-from cli_case import Case
+from cli_case import Case, PROGRAM
 
 
 class Tracking(Case):
@@ -68,6 +73,102 @@ class Tracking(Case):
         ]:
             self.assert_refused(2, "track", path, *options, words=[word])
         self.assert_refused(2, "track", path, "--range", "0.6:0.3", words=["0.6"])
+
+
+class Folder(Case):
+    """What -o names: a folder that is new, empty, or of an earlier run; written whole or not at all."""
+
+    def setUp(self):
+        super().setUp()
+        self.run_of = ("track", self.sample("gaussians", "12,12,12,9"), "--iso", "0.5")
+
+    def names(self, folder="tracks"):
+        return sorted(os.listdir(folder))
+
+    def test_it_is_not_the_name_of_a_file(self):
+        for name in ("tracks.csv", "deep/er/tracks.vtu"):
+            self.assert_refused(2, *self.run_of, "-o", name, words=["folder", "such as " + name[:-4]])
+        self.assert_refused(2, *self.run_of, "-o", "field.nrrd")
+        (self.folder / "notes").write_text("")
+        self.assert_refused(2, *self.run_of, "-o", "notes", words=["notes is a file"])
+        self.assert_refused(1, *self.run_of, "-o", "notes/tracks", words=["notes"])
+        self.assertEqual(self.files(), ["field.nrrd", "notes"])
+        for name in ("run.of.2026", "at 0.5", "deep/er/"):
+            self.ok(*self.run_of, "-o", name)
+            self.assertIn("tracks.csv", self.names(name))
+        (self.folder / "folder.csv").mkdir()
+        self.ok(*self.run_of, "-o", "folder.csv")
+
+    def test_files_of_others_are_left_alone(self):
+        other = self.folder / "tracks"
+        other.mkdir()
+        (other / ".hidden").write_text("")
+        (other / "tracks.csv").write_text("my own")
+        (other / "zebra").write_text("")
+        self.assert_refused(2, *self.run_of, "-o", "tracks", words=["tracks.csv", "tracks/tracks"])
+        self.assertEqual((other / "tracks.csv").read_text(), "my own")
+        (other / "source.json").write_text("{}")
+        self.assert_refused(2, *self.run_of, "-o", "tracks")
+        for name in ("tracks.csv", "zebra", "source.json"):
+            (other / name).unlink()
+        self.ok(*self.run_of, "-o", "tracks")
+        (other / "notes.txt").write_text("to keep")
+        self.ok(*self.run_of, "-o", "tracks")
+        self.assertIn("notes.txt", self.names())
+
+    # Else a series would go on into surfaces of a longer run.
+    def test_what_an_earlier_run_left_is_replaced_whole(self):
+        self.ok(*self.run_of, "-o", "first")
+        self.ok(*self.run_of, "-o", "tracks")
+        self.assertIn("surface_0008.vtp", self.names())
+        for options in (["--steps", "0:4"], ["--track", "region"], ["--select", "first:0"]):
+            self.ok(*self.run_of, *options, "-o", "tracks")
+            self.ok(*self.run_of, *options, "-o", "new")
+            self.assertEqual(self.names(), self.names("new"), options)
+            (self.folder / "new/source.json").unlink()
+            for name in self.names("new"):
+                (self.folder / "new" / name).unlink()
+
+    def test_the_folder_that_is_read_stays(self):
+        self.ok(*self.run_of, "-o", "tracks")
+        before = (self.folder / "tracks/source.json").read_bytes()
+        for name in ("tracks", "./tracks/"):
+            self.assert_refused(2, "track", "--select", "tracks:0", "-o", name, words=["--select"])
+        self.assertEqual((self.folder / "tracks/source.json").read_bytes(), before)
+
+    # Told before the field is read.
+    def test_a_folder_that_cannot_be_made(self):
+        self.assert_refused(1, "track", "no such field.nrrd", "--iso", "0.5", "-o", "/proc/tracks", words=["/proc/tracks"])
+        if os.getuid() != 0:
+            (self.folder / "closed").mkdir(mode=0o500)
+            self.assert_refused(1, *self.run_of, "-o", "closed/tracks", words=["closed/tracks"])
+            self.assert_refused(1, *self.run_of, "-o", "closed", words=["closed"])
+            self.assert_refused(1, "extract", "no such field.nrrd", "--iso", "0.5", "-o", "closed/a.ply", words=["closed/a.ply"])
+
+    # A full disk, as far as a test can have one.
+    def test_a_file_that_does_not_fit(self):
+        self.ok(*self.run_of, "-o", "old")
+        before = {name: (self.folder / "old" / name).read_bytes() for name in self.names("old")}
+        for folder in ("old", "new/tracks"):
+            self.assert_refused(1, "track", "field.nrrd", "--iso", "0.4", "-o", folder, words=["cannot write"],
+                                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4000, 4000)))
+        self.assertEqual({name: (self.folder / "old" / name).read_bytes() for name in self.names("old")}, before)
+        self.assertEqual(self.files(), ["field.nrrd", "old"])
+
+    def test_ctrl_c_while_writing_leaves_nothing(self):
+        self.sample("gaussians", "24,24,24,200", "long.nrrd")
+        for folder, files in (("new/tracks", ["field.nrrd", "long.nrrd"]), ("old", ["field.nrrd", "long.nrrd", "old"])):
+            if folder == "old":
+                self.ok(*self.run_of, "-o", "old")
+            before = self.names("old") if folder == "old" else []
+            with subprocess.Popen([PROGRAM, "track", "long.nrrd", "--iso", "0.5", "-o", folder], stdout=subprocess.PIPE) as run:
+                while run.poll() is None and not (os.path.isdir(folder) and len(self.names(folder)) > len(before) + 20):
+                    time.sleep(0.001)
+                run.send_signal(signal.SIGINT)
+                self.assertEqual((run.wait(), run.stdout.read()), (130, b""))
+            self.assertEqual(self.files(), files)
+            if before:
+                self.assertEqual(self.names("old"), before)
 
 
 if __name__ == "__main__":

@@ -216,6 +216,48 @@ TEST(FileGroup, files_that_wait_for_the_others_are_removed_on_a_signal) {
   EXPECT_FALSE(group.commit());
 }
 
+TEST(FileGroup, folders_are_made_with_their_files_or_not_at_all) {
+  const TemporaryFolder folder;
+  const auto write_into = [&](FileGroup& group, const fs::path& inner) {
+    ASSERT_TRUE(group.make_folder(inner)) << inner;
+    auto file = AtomicFile::create(inner / "a");
+    ASSERT_TRUE(file->commit(&group)) << inner;
+  };
+  for (const char* name : {"one/two", "one/two/", "one/./two", "one/three/../two/."}) {
+    {
+      FileGroup group;
+      write_into(group, folder / name);
+      EXPECT_TRUE(fs::is_directory(folder / "one/two"));
+    }
+    EXPECT_TRUE(folder.names().empty()) << name;
+    FileGroup group;
+    write_into(group, folder / name);
+    remove_unfinished_files();
+    EXPECT_TRUE(folder.names().empty()) << name;
+  }
+  FileGroup group;
+  write_into(group, folder / "one/two");
+  EXPECT_EQ(group.files(), std::vector<fs::path>{folder / "one/two/a"});
+  ASSERT_TRUE(group.commit());
+  remove_unfinished_files();
+  EXPECT_TRUE(fs::exists(folder / "one/two/a"));
+}
+
+TEST(FileGroup, folders_that_others_use_stay) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "there");
+  {
+    FileGroup group;
+    ASSERT_TRUE(group.make_folder(folder / "there"));
+    ASSERT_TRUE(group.make_folder(folder / "made"));
+    ASSERT_TRUE(write_file(folder / "made/by another", ""));
+    ASSERT_TRUE(write_file(folder / "file", ""));
+    expect_unwritable(group.make_folder(folder / "file/in"), folder / "file", EEXIST);
+    expect_unwritable(group.make_folder(folder / "file"), folder / "file", EEXIST);
+  }
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"file", "made", "there"}));
+}
+
 TEST(Base64, pieces_of_any_size_give_the_text_of_the_whole) {
   const char* vectors[][2] = {{"", ""},
                               {"f", "Zg=="},

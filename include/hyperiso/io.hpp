@@ -14,6 +14,7 @@
 namespace hyperiso {
 
 class AtomicFile; // a file on its way to its place; internal
+struct UnfinishedFile;
 
 /// How to read a field.
 struct ReadOptions {
@@ -110,12 +111,21 @@ class FileGroup {
   FileGroup();
   FileGroup(FileGroup&&) noexcept;
   ~FileGroup();
-  /// Error: file_unwritable. Call once, last.
+
+  /// Makes a folder for files of the group, and those around it, where there is none. Without `commit` they
+  /// are removed again, if they are empty. Error: file_unwritable.
+  Status make_folder(const std::filesystem::path& folder);
+  /// The files that are complete, as they were named.
+  std::vector<std::filesystem::path> files() const;
+
+  /// Signals to this thread wait until all files have their places. Error: file_unwritable. Call once, last.
   Status commit();
 
  private:
   friend class AtomicFile;
+  void remove_folders();
   std::vector<AtomicFile> files_;
+  std::vector<UnfinishedFile*> folders_; // that were made, outer ones first
 };
 
 /// How to write a mesh.
@@ -217,8 +227,8 @@ struct SeriesEntry {
 Status write_series(const std::vector<SeriesEntry>& entries, const std::filesystem::path& path,
                     FileGroup* group = nullptr);
 
-/// Removes the temporary files of writes under way in this process. For a program's handler of the signals
-/// that end it (async-signal-safe); the writes themselves fail if they go on.
+/// Removes the temporary files and new folders of writes under way in this process. For a program's handler
+/// of the signals that end it (async-signal-safe); the writes themselves fail if they go on.
 void remove_unfinished_files() noexcept;
 
 } // namespace hyperiso

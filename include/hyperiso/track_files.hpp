@@ -21,7 +21,8 @@ namespace hyperiso {
 /// | volume.svg | volume against time, one line per track (paper 003 figure 8) |
 /// | napari_tracks.csv, napari_graph.json | for napari's tracks layer |
 ///
-/// With a `group` the files take their places when it is committed. Errors: file_unwritable, out_of_memory.
+/// All of them or none; with a `group` they take their places when it is committed. Errors: file_unwritable,
+/// out_of_memory.
 Status write_tracking(const TrackingGraph& graph, const std::filesystem::path& directory,
                       FileGroup* group = nullptr);
 

@@ -2,8 +2,11 @@
 
 #include "cli/failure.hpp"
 #include "cli/surface.hpp"
+#include "cli/tracked_folder.hpp"
 #include "core/text.hpp"
+#include "io/atomic_file.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <fmt/format.h>
@@ -58,11 +61,64 @@ std::vector<std::string> inputs_of(const CLI::App& verb) {
   return inputs;
 }
 
+// Names that a table, a picture or a mesh would have: `track` writes all of them, into one folder.
+bool looks_like_file(const fs::path& path) {
+  constexpr const char* suffixes[] = {".csv", ".tsv", ".txt", ".json", ".xml",    ".graphml", ".gexf", ".dot",
+                                      ".svg", ".png", ".pdf", ".html", ".vtu",    ".vtp",     ".vti",  ".vtk",
+                                      ".pvd", ".ply", ".stl", ".obj",  ".off",    ".glb",     ".mp4",  ".gif",
+                                      ".npy", ".npz", ".raw", ".nrrd", ".series", ".geojson"};
+  return std::ranges::find(suffixes, path.extension().string()) != std::end(suffixes);
+}
+
+// What is in a folder beside hidden files, the first by name.
+std::optional<std::string> something_in(const fs::path& folder) {
+  std::optional<std::string> first;
+  std::error_code failure;
+  for (const auto& entry : fs::directory_iterator(folder, failure)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with('.') && (!first || name < *first)) first = name;
+  }
+  return first;
+}
+
+void check_folder(const std::string& output, const std::vector<std::string>& selected) {
+  for (const std::string& select : selected) // FOLDER:ID
+    if (std::error_code failure; fs::equivalent(output, select.substr(0, select.rfind(':')), failure))
+      fail_usage(text("-o: ", output, " is the folder that --select reads; name another"));
+  std::error_code failure;
+  if (!fs::exists(output, failure)) {
+    if (looks_like_file(output))
+      fail_usage(text("-o: track writes a folder of tables, graphs and surfaces, and ", output,
+                      " is the name of a file; name a folder, such as ",
+                      fs::path(output).replace_extension().string()));
+    FileGroup attempt;
+    return take(attempt.make_folder(output));
+  }
+  if (!fs::is_directory(output, failure))
+    fail_usage(text("-o: ", output, " is a file, and track writes a folder of them; name another"));
+  const fs::path folder = output;
+  if (const auto other = something_in(folder); other && !files_of_tracked_folder(output))
+    fail_usage(text("-o: ", output, " holds files that track did not write, such as ", *other,
+                    "; name a new or an empty folder, such as ", (folder / "tracks").string()));
+  take(AtomicFile::create(folder / "tracks.csv"));
+}
+
+void check_file(const fs::path& output) {
+  const fs::path folder = output.parent_path();
+  if (has_number_pattern(folder.string())) return;
+  std::error_code failure;
+  if (!folder.empty() && !fs::exists(folder, failure))
+    throw Failure{{Code::file_unwritable, text("-o ", output.string(), ": there is no folder ",
+                                               folder.string(), "; make it first")}};
+  const bool has_place = !fs::exists(output, failure) || fs::is_regular_file(output, failure);
+  if (has_place) take(AtomicFile::create(output));
+}
+
 } // namespace
 
 void check_output(const CLI::App& verb) {
   const std::vector<std::string> given = values_of(verb, "--output");
-  if (given.empty()) return;
+  if (given.empty() || given.front().empty()) return;
   const std::string& output = given.front();
   // Standard output has the report; a file called "-" is nobody's wish.
   if (output == "-")
@@ -71,13 +127,10 @@ void check_output(const CLI::App& verb) {
   for (const std::string& input : inputs_of(verb))
     if (replaces(output, input))
       fail_usage(text("-o: ", output, " would replace ", input, ", which is read; name another file"));
-  const fs::path folder = fs::path(output).parent_path();
-  std::error_code failure;
-  const bool makes_folders = verb.get_name() == "track";
-  if (!makes_folders && !folder.empty() && !has_number_pattern(folder.string()) &&
-      !fs::exists(folder, failure))
-    throw Failure{{Code::file_unwritable,
-                   text("-o ", output, ": there is no folder ", folder.string(), "; make it first")}};
+  if (verb.get_name() == "track")
+    check_folder(output, values_of(verb, "--select"));
+  else
+    check_file(output);
 }
 
 } // namespace hyperiso::cli

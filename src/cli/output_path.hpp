@@ -8,8 +8,9 @@
 
 namespace hyperiso::cli {
 
-// Fails if -o of the verb is "-", lies in a folder that is not there, or if what is written replaces a file
-// that is read: by that name or another, or as one of several numbered files.
+// Fails if -o of the verb is "-", lies where nothing can be written, or if what is written replaces a file
+// that is read: by that name or another, or as one of several numbered files. A folder, which `track` writes,
+// must be new, empty, or of an earlier run.
 void check_output(const CLI::App& verb);
 
 } // namespace hyperiso::cli

@@ -29,6 +29,7 @@ void install_signal_handlers() {
     ::sigaction(signal, &action, nullptr);
   }
   ::signal(SIGPIPE, SIG_IGN);
+  ::signal(SIGXFSZ, SIG_IGN); // past the largest size of a file (ulimit -f) a write fails instead
 }
 
 } // namespace hyperiso::cli

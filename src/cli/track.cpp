@@ -108,9 +108,8 @@ void write_outputs(const Track& options, const TrackedFolder& folder, const Trac
                    SelectedSteps& steps) {
   FileGroup files;
   take(write_tracking(graph, options.directory, &files));
-  write_source(folder, steps.info(), files);
   if (!options.is_local()) write_surfaces(options, graph, steps, files);
-  take(files.commit());
+  finish_folder(folder, steps.info(), files);
 }
 
 std::string counts_of(const TrackingGraph& graph) {
@@ -212,7 +211,10 @@ Command track_command(CLI::App& program) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->group("Tracks");
-  app->add_option("-o,--output", options->directory, "the folder for all files; made if it does not exist")
+  app->add_option("-o,--output", options->directory,
+                  "the folder for all files; made if it does not exist. It may hold those of an earlier run, "
+                  "which are "
+                  "replaced, but nothing else")
       ->type_name("FOLDER")
       ->group("Output");
   options->printing.add_to(*app);

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 
 namespace hyperiso::cli {
 namespace {
@@ -48,6 +49,12 @@ Json json_of_field(const FieldInfo& info) {
   for (const Axis& axis : info.axes)
     axes.push_back({{"first", axis.coordinate(0)}, {"last", axis.coordinate(axis.count - 1)}});
   return {{"size", size_and_type(info)}, {"axes", std::move(axes)}};
+}
+
+std::vector<std::string> names_of(const FileGroup& files) {
+  std::vector<std::string> names;
+  for (const fs::path& file : files.files()) names.push_back(file.filename().string());
+  return names;
 }
 
 // The way from a folder to a file, so that both can be moved together.
@@ -142,6 +149,24 @@ void check_kind(const TrackedFolder& folder) {
                     (fs::path(folder.path) / "tracks.pvd").string(), " in ParaView"));
 }
 
+void add_source(TrackedFolder folder, const FieldInfo& selected, FileGroup& files) {
+  if (!selected.has_time && folder.input.time_axis.empty()) // the last, which only `track` takes for time
+    folder.input.time_axis = std::to_string(selected.axes.size() - 1);
+  Json options = Json::object();
+  for (const auto& [name, value] : options_of(folder))
+    if (!value->empty()) options[name] = *value;
+  if (folder.input.big_endian) options[big_endian] = true;
+  Json fields = Json::array();
+  for (const std::string& file : folder.input.paths) fields.push_back(path_from(folder.path, file));
+  const Json source{
+      {"version", version},    {"fields", std::move(fields)},      {"options", std::move(options)},
+      {"seeds", folder.seeds}, {"field", json_of_field(selected)}, {"files", names_of(files)}};
+  auto file = take(AtomicFile::create(source_file(folder.path)));
+  // A name that is not UTF-8 has no place in JSON: that field is to be named after the folder.
+  file.write(source.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  take(file.commit(&files));
+}
+
 } // namespace
 
 std::string TrackedFolder::name() const {
@@ -179,24 +204,26 @@ void TrackedFolder::check_tracks(const TrackingGraph& graph) const {
                   "changed; run 'hyperiso track' again"));
 }
 
-void write_source(TrackedFolder folder, const FieldInfo& selected, FileGroup& files) {
-  if (!selected.has_time && folder.input.time_axis.empty()) // the last, which only `track` takes for time
-    folder.input.time_axis = std::to_string(selected.axes.size() - 1);
-  Json options = Json::object();
-  for (const auto& [name, value] : options_of(folder))
-    if (!value->empty()) options[name] = *value;
-  if (folder.input.big_endian) options[big_endian] = true;
-  Json fields = Json::array();
-  for (const std::string& file : folder.input.paths) fields.push_back(path_from(folder.path, file));
-  const Json source{{"version", version},
-                    {"fields", std::move(fields)},
-                    {"options", std::move(options)},
-                    {"seeds", folder.seeds},
-                    {"field", json_of_field(selected)}};
-  auto file = take(AtomicFile::create(source_file(folder.path)));
-  // A name that is not UTF-8 has no place in JSON: that field is to be named after the folder.
-  file.write(source.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
-  take(file.commit(&files));
+std::optional<std::vector<std::string>> files_of_tracked_folder(const std::string& folder) {
+  std::ifstream file(source_file(folder));
+  const Json source = Json::parse(file, nullptr, false);
+  if (!source.is_object() || !source.contains("version") || !source.contains("fields")) return std::nullopt;
+  std::vector<std::string> files;
+  const Json names = source.value("files", Json::array());
+  for (const Json& name : names)
+    if (name.is_string() && fs::path(name.get<std::string>()).filename() == name.get<std::string>())
+      files.push_back(name.get<std::string>());
+  return files;
+}
+
+void finish_folder(const TrackedFolder& folder, const FieldInfo& selected, FileGroup& files) {
+  const auto earlier = files_of_tracked_folder(folder.path);
+  add_source(folder, selected, files);
+  const std::vector<std::string> now = names_of(files);
+  take(files.commit());
+  for (const std::string& name : earlier.value_or(std::vector<std::string>()))
+    if (std::error_code failure; std::ranges::find(now, name) == now.end())
+      fs::remove(fs::path(folder.path) / name, failure);
 }
 
 bool names_folder(const FieldOptions& input) {

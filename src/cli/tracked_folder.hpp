@@ -6,6 +6,8 @@
 #include "cli/tracking_options.hpp"
 #include "hyperiso/io.hpp"
 
+#include <optional>
+
 namespace hyperiso::cli {
 
 // What source.json holds.
@@ -27,8 +29,12 @@ struct TrackedFolder {
   std::string name() const;
 };
 
-// Adds source.json to a folder. `selected`: the field as it was tracked.
-void write_source(TrackedFolder folder, const FieldInfo& selected, FileGroup& files);
+// Gives the files their places in the folder, with a source.json beside them, and removes what an earlier run
+// left there that is not among them. `selected`: the field as it was tracked.
+void finish_folder(const TrackedFolder& folder, const FieldInfo& selected, FileGroup& files);
+
+// The files that `track` wrote into a folder, by their names in it; nothing if it wrote none there.
+std::optional<std::vector<std::string>> files_of_tracked_folder(const std::string& folder);
 
 // Whether INPUT... begins with a folder.
 bool names_folder(const FieldOptions& input);

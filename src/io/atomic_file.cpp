@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cerrno>
 #include <charconv>
+#include <csignal>
 #include <cstring>
 #include <fcntl.h>
 #include <optional>
@@ -16,13 +17,15 @@
 
 namespace hyperiso {
 
-// The temporary files of this process, for a signal handler to remove. Entries are added and reused, never
-// freed, so that a handler can walk the list at any moment. A name changes only while its entry is `busy`,
-// and a handler reads it only after taking the entry for good: it never sees a name that is being replaced.
+// The temporary files of this process and the folders made for them, for a signal handler to remove. Entries
+// are added and reused, never freed, so that a handler can walk the list at any moment. A name changes only
+// while its entry is `busy`, and a handler reads it only after taking the entry for good: it never sees a
+// name that is being replaced.
 struct UnfinishedFile {
   enum State { free, busy, live, taken };
   std::atomic<State> state{busy};
   std::string name;
+  bool is_folder = false;
   UnfinishedFile* next = nullptr;
 };
 
@@ -36,7 +39,7 @@ bool change_state(UnfinishedFile* entry, UnfinishedFile::State from, UnfinishedF
   return entry->state.compare_exchange_strong(from, to);
 }
 
-UnfinishedFile* register_unfinished(const std::filesystem::path& file) {
+UnfinishedFile* register_unfinished(const std::filesystem::path& file, bool is_folder = false) {
   UnfinishedFile* entry = unfinished_files.load();
   while (entry && !change_state(entry, UnfinishedFile::free, UnfinishedFile::busy)) entry = entry->next;
   if (!entry) {
@@ -46,6 +49,7 @@ UnfinishedFile* register_unfinished(const std::filesystem::path& file) {
     }
   }
   entry->name = file.string();
+  entry->is_folder = is_folder;
   entry->state = UnfinishedFile::live;
   return entry;
 }
@@ -94,7 +98,14 @@ int open_retrying(const char* path, int flags, mode_t mode = 0) {
 void remove_unfinished_files() noexcept {
   const int saved = errno;
   for (UnfinishedFile* entry = unfinished_files.load(); entry; entry = entry->next)
-    if (change_state(entry, UnfinishedFile::live, UnfinishedFile::taken)) ::unlink(entry->name.c_str());
+    if (change_state(entry, UnfinishedFile::live, UnfinishedFile::taken) && !entry->is_folder)
+      ::unlink(entry->name.c_str());
+  for (bool removed = true; removed;) { // inner folders before outer ones
+    removed = false;
+    for (UnfinishedFile* entry = unfinished_files.load(); entry; entry = entry->next)
+      removed |=
+          entry->state == UnfinishedFile::taken && entry->is_folder && ::rmdir(entry->name.c_str()) == 0;
+  }
   errno = saved;
 }
 
@@ -273,13 +284,68 @@ Error AtomicFile::error() const {
                    : text("cannot write ", target_.string(), ": ", std::strerror(error_number_))};
 }
 
+namespace {
+
+// What ends a program comes while no file, or every file, has its place.
+class SignalsWait {
+ public:
+  SignalsWait() {
+    sigset_t all;
+    ::sigfillset(&all);
+    ::pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  SignalsWait(const SignalsWait&) = delete;
+  ~SignalsWait() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+ private:
+  sigset_t before_;
+};
+
+} // namespace
+
 FileGroup::FileGroup() = default;
 FileGroup::FileGroup(FileGroup&&) noexcept = default;
-FileGroup::~FileGroup() = default;
+FileGroup::~FileGroup() {
+  files_.clear();
+  remove_folders();
+}
+
+void FileGroup::remove_folders() {
+  for (; !folders_.empty(); folders_.pop_back()) {
+    ::rmdir(folders_.back()->name.c_str());
+    forget_unfinished(folders_.back());
+  }
+}
+
+Status FileGroup::make_folder(const std::filesystem::path& folder) {
+  if (folder.empty()) return {}; // where the program runs
+  const auto exists = [&] {
+    std::error_code failure;
+    return std::filesystem::is_directory(folder, failure);
+  };
+  if (exists()) return {};
+  const Status around = make_folder(folder.parent_path());
+  if (!around || exists()) return around; // a/ and a/. once there is a
+  folders_.push_back(register_unfinished(folder, true));
+  if (::mkdir(folder.c_str(), 0777) == 0) return {};
+  const int error_number = errno;
+  forget_unfinished(folders_.back());
+  folders_.pop_back();
+  return Error{Code::file_unwritable,
+               text("cannot make the folder ", folder.string(), ": ", std::strerror(error_number))};
+}
+
+std::vector<std::filesystem::path> FileGroup::files() const {
+  std::vector<std::filesystem::path> files;
+  for (const AtomicFile& file : files_) files.push_back(file.target());
+  return files;
+}
 
 Status FileGroup::commit() {
+  const SignalsWait all_of_them;
   for (AtomicFile& file : files_)
     if (const Status placed = file.commit(); !placed) return placed;
+  for (UnfinishedFile* folder : std::exchange(folders_, {})) forget_unfinished(folder);
   return {};
 }
 

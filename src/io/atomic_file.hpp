@@ -11,8 +11,6 @@
 
 namespace hyperiso {
 
-struct UnfinishedFile;
-
 // Writes beside the target under the name .hyperiso-PROCESS-NUMBER.part and renames at `commit`; until then,
 // and after any failure, what was at the target stays as it was. The temporary file is removed by the
 // destructor, or by `remove_unfinished_files` (hyperiso/io.hpp) when a signal ends the program. A temporary
@@ -38,6 +36,7 @@ class AtomicFile {
   void write(std::string_view characters) { write(characters.data(), characters.size()); }
   bool failed() const { return error_number_ != 0; }
   Status status() const; // the failure, as `commit` would report it
+  const std::filesystem::path& target() const { return target_; }
   // Of the file that is written to, for another program to write it; nothing may have been written here.
   int descriptor() const { return descriptor_; }
 

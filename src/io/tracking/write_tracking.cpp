@@ -7,11 +7,11 @@
 namespace hyperiso {
 namespace {
 
-Status write_text(const std::string& content, const std::filesystem::path& path, FileGroup* group) {
+Status write_text(const std::string& content, const std::filesystem::path& path, FileGroup& files) {
   auto file = AtomicFile::create(path);
   if (!file) return file.error();
   file->write(content);
-  return file->commit(group);
+  return file->commit(&files);
 }
 
 } // namespace
@@ -34,17 +34,16 @@ Status write_tracking(const TrackingGraph& graph, const std::filesystem::path& d
                                        {"napari_tracks.csv", napari_tracks_csv},
                                        {"napari_graph.json", napari_graph_json}};
   try {
-    std::error_code failure;
-    std::filesystem::create_directories(directory, failure);
-    if (failure)
-      return Error{Code::file_unwritable,
-                   text(directory.string(), ": cannot make this folder: ", failure.message())};
+    FileGroup own;
+    FileGroup& files = group ? *group : own;
+    if (const Status made = files.make_folder(directory); !made) return made;
     for (const Output& output : outputs)
-      if (const Status written = write_text(output.content(graph), directory / output.name, group); !written)
+      if (const Status written = write_text(output.content(graph), directory / output.name, files); !written)
         return written.error();
     WriteMeshOptions options;
-    options.group = group;
-    return write_mesh(graph_mesh(graph), directory / "graph.vtu", options);
+    options.group = &files;
+    const Status written = write_mesh(graph_mesh(graph), directory / "graph.vtu", options);
+    return !written || group ? written : own.commit();
   } catch (const std::bad_alloc&) {
     return Error{Code::out_of_memory, text("no memory to write ", directory.string())};
   }
