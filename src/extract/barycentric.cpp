@@ -1,5 +1,6 @@
 #include "extract/barycentric.hpp"
 
+#include "core/cell.hpp"
 #include "core/sign.hpp"
 #include "extract/kernels.hpp"
 #include "extract/reference.hpp"
@@ -148,8 +149,7 @@ struct CellSamples {
   CellSamples(const Samples<D>& samples, const RowKernels& kernels, const std::array<std::int64_t, D>& cell) {
     unsigned inside = 0;
     for (unsigned corner = 0; corner < 1u << D; ++corner) {
-      auto index = cell;
-      for (int axis = 0; axis < D; ++axis) index[axis] += corner >> axis & 1;
+      const auto index = corner_of(cell, corner);
       const std::byte* sample = samples.at(index); // a row of one sample
       std::uint64_t word = 0;
       std::uint8_t uniform = 0;

@@ -3,6 +3,7 @@
 // give, vertex for vertex and simplex for simplex. It also extracts in the dimensions that the engine does
 // not.
 
+#include "core/cell.hpp"
 #include "core/orientation.hpp"
 #include "core/sign.hpp"
 #include "extract/cell_corners.hpp"
@@ -24,9 +25,7 @@ std::optional<LabelSet<D>> active_cell_labels(const FieldView<const T, D>& field
   LabelSet<D> labels{};
   bool any = false, all = true;
   for (unsigned vertex = 0; vertex < 1u << D; ++vertex) {
-    std::array<std::int64_t, D> sample = cell;
-    for (int axis = 0; axis < D; ++axis) sample[axis] += vertex >> axis & 1;
-    const T value = field.at(sample);
+    const T value = field.at(corner_of(cell, vertex));
     if (is_missing(value)) return std::nullopt;
     const bool inside = rule.inside(value);
     any |= inside;
@@ -110,9 +109,7 @@ struct CellSimplices {
 template <int D>
 GridEdge edge_in_cell(const std::array<std::int64_t, D>& dims, const std::array<std::int64_t, D>& lowest,
                       const typename CellSimplices<D>::EdgeEnds& ends) {
-  std::array<std::int64_t, D> upper = lowest;
-  for (int axis = 0; axis < D; ++axis) upper[axis] += ends[1] >> axis & 1;
-  return grid_edge<D>(dims, upper, ends[0] ^ ends[1]);
+  return grid_edge<D>(dims, corner_of(lowest, ends[1]), ends[0] ^ ends[1]);
 }
 
 // Edges of the grid, each once and ascending, in hardly more memory than twice their own.
@@ -195,13 +192,7 @@ std::array<double, D> reference_position(const FieldView<const T, D>& field, Gri
   const auto ends = grid_edge_ends<D>(field.dims(), edge);
   const double weight = crossing(static_cast<double>(field.at(ends.lower)),
                                  static_cast<double>(field.at(ends.upper)), isovalue);
-  std::array<double, D> position;
-  for (int axis = 0; axis < D; ++axis) {
-    const double lower = field.grid.axes[axis].coordinate(ends.lower[axis]);
-    const double upper = field.grid.axes[axis].coordinate(ends.upper[axis]);
-    position[axis] = ends.direction >> axis & 1 ? lower + weight * (upper - lower) : lower;
-  }
-  return position;
+  return point_between(field.grid, ends, weight);
 }
 
 // The corners of the mesh, by the places of their edges among those that carry its vertices.

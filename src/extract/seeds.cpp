@@ -4,6 +4,7 @@
 
 #include "hyperiso/seeds.hpp"
 
+#include "core/cell.hpp"
 #include "core/orientation.hpp"
 #include "core/sign.hpp"
 #include "core/text.hpp"
@@ -219,11 +220,6 @@ class Tracer {
     return entry->second;
   }
 
-  static Index<D> corner_of(const Index<D>& cell, unsigned vertex) {
-    Index<D> sample = cell;
-    for (int axis = 0; axis < D; ++axis) sample[axis] += vertex >> axis & 1;
-    return sample;
-  }
   static LatticeEdge<D> edge_of(const Index<D>& cell, Pieces::Corner corner) {
     return {corner_of(cell, corner.upper), corner.lower ^ corner.upper};
   }
@@ -304,13 +300,7 @@ class Tracer {
   std::array<double, D> position_on(const LatticeEdge<D>& edge) {
     const Index<D> start = edge.lower();
     const double weight = crossing(sample(start), sample(edge.upper), isovalue_);
-    std::array<double, D> position;
-    for (int axis = 0; axis < D; ++axis) {
-      const double lower = field_.grid.axes[axis].coordinate(start[axis]);
-      const double upper = field_.grid.axes[axis].coordinate(edge.upper[axis]);
-      position[axis] = edge.direction >> axis & 1 ? lower + weight * (upper - lower) : lower;
-    }
-    return position;
+    return point_between<D>(field_.grid, {start, edge.upper, edge.direction}, weight);
   }
 
   bool numbers_fit() const {

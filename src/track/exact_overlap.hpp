@@ -2,6 +2,7 @@
 // Volumes that the components of two steps have in common, exactly: of the piecewise linear interpolants on
 // the Kuhn simplices of the cells.
 
+#include "core/cell.hpp"
 #include "core/determinant.hpp"
 #include "core/sign.hpp"
 #include "hyperiso/extract.hpp"
@@ -71,8 +72,7 @@ class StepShape {
   std::optional<std::uint32_t> owner_of_cell(const Sample& cell) const {
     std::optional<std::uint32_t> owner;
     for (unsigned corner = 0; corner < 1u << D; ++corner) {
-      Sample at = cell;
-      for (int axis = 0; axis < D; ++axis) at[axis] += corner >> axis & 1;
+      const Sample at = corner_of(cell, corner);
       const std::uint32_t one = owners_[number(at)];
       if (owner && one != *owner) return std::nullopt;
       owner = one;
@@ -222,8 +222,7 @@ class ExactOverlap {
     }
     std::array<bool, 2> has_data{true, true};
     for (unsigned corner = 0; corner < 1u << D; ++corner) {
-      Sample at = cell;
-      for (int axis = 0; axis < D; ++axis) at[axis] += corner >> axis & 1;
+      const Sample at = corner_of(cell, corner);
       has_data[0] &= !std::isnan(first_.value(at));
       has_data[1] &= !std::isnan(second_.value(at));
     }

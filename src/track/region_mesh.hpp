@@ -1,6 +1,7 @@
 #pragma once
 // The region that a surface bounds, or the volume between two levels, as a mesh of D-simplices.
 
+#include "core/cell.hpp"
 #include "core/sign.hpp"
 #include "core/text.hpp"
 #include "extract/engine.hpp"
@@ -117,10 +118,6 @@ class KuhnRegion {
       }
       if (inner > 0) add_staircases(std::span(in).first(inner), std::span(out).first(outer));
     } while (std::ranges::next_permutation(order).found);
-  }
-  static Sample corner_of(Sample cell, unsigned corner) {
-    for (int axis = 0; axis < D; ++axis) cell[axis] += corner >> axis & 1;
-    return cell;
   }
 
   // Steps over the inside corners: bit k says whether step k goes to the next one.
