@@ -2,6 +2,7 @@
 // directions of time until no step has a vertex that only one of its slabs knows: cell by cell where that is
 // enough (family_trace.hpp), else with the mesh of each slab.
 
+#include "core/cell.hpp"
 #include "core/text.hpp"
 #include "hyperiso/seeds.hpp"
 #include "hyperiso/track.hpp"
@@ -83,27 +84,20 @@ class LocalRun {
       made.emplace(number, trace.make(number, time(number), time(number + 1)));
       if (!made.at(number).sweep) return false;
     }
-    // One that is empty before the family begins, and one after it ends.
-    const auto sweep_of = [&](std::int64_t number) {
-      const auto found = made.find(number);
-      return found != made.end() ? std::move(found->second.sweep)
-                                 : std::make_unique<Sweep<D>>(Slab<D>(), time(number), time(number + 1));
-    };
     const auto nothing = std::make_shared<const StepPieces>(std::vector<GridEdge>(),
                                                             std::vector<std::uint32_t>(), GridEdge{1}, D - 1);
-    const std::int64_t first = std::max<std::int64_t>(begin - 1, 0),
-                       last = std::min(end, result_.graph.steps - 2);
-    std::unique_ptr<Sweep<D>> lower;
-    for (std::int64_t number = first; number <= last; ++number) {
-      auto upper = sweep_of(number);
-      const auto pieces = made.contains(number) ? made.at(number).pieces : nothing;
-      if (lower || number == 0) Level<D>(lower.get(), upper.get(), pieces).resolve(time(number), builder_);
-      upper->run(builder_);
-      lower = std::move(upper);
-    }
-    if (last == result_.graph.steps - 2)
-      Level<D>(lower.get(), nullptr, made.contains(last) ? made.at(last).upper_pieces : nothing)
-          .resolve(time(last + 1), builder_);
+    pass_slabs(
+        begin, end,
+        [&](std::int64_t number) {
+          const auto found = made.find(number);
+          return found != made.end() ? std::move(found->second.sweep) : sweep_of(number, Slab<D>());
+        },
+        [&](std::int64_t step) {
+          const auto found = made.find(step);
+          if (found != made.end()) return found->second.pieces;
+          const bool is_last = step == result_.graph.steps - 1 && made.contains(step - 1);
+          return is_last ? made.at(step - 1).upper_pieces : nothing;
+        });
     result_.samples = trace.samples();
     return true;
   }
@@ -191,11 +185,8 @@ class LocalRun {
   }
   static bool has_missing_corner(const FieldView<const T, D>& field,
                                  const std::array<std::int64_t, D>& cell) {
-    for (unsigned corner = 0; corner < 1u << D; ++corner) {
-      auto sample = cell;
-      for (int axis = 0; axis < D; ++axis) sample[axis] += corner >> axis & 1;
-      if (is_missing(field.at(sample))) return true;
-    }
+    for (unsigned corner = 0; corner < 1u << D; ++corner)
+      if (is_missing(field.at(corner_of(cell, corner)))) return true;
     return false;
   }
 
@@ -224,21 +215,40 @@ class LocalRun {
   Status sweep() {
     std::erase_if(traces_, [](const auto& entry) { return !entry.second.slab; });
     if (traces_.empty()) return {};
-    const std::int64_t first = std::max<std::int64_t>(traces_.begin()->first - 1, 0);
-    const std::int64_t last = std::min(traces_.rbegin()->first + 1, result_.graph.steps - 2);
+    const auto pieces_are_not_known = [](std::int64_t) { return std::shared_ptr<const StepPieces>(); };
+    pass_slabs(
+        traces_.begin()->first, traces_.rbegin()->first + 1,
+        [&](std::int64_t number) {
+          const auto trace = traces_.find(number);
+          if (trace != traces_.end()) return sweep_of(number, *std::move(trace->second.slab));
+          Slab<D> empty;
+          empty.has_missing = true; // beside missing samples a family may end at a step that it reaches
+          return sweep_of(number, std::move(empty));
+        },
+        pieces_are_not_known);
+    return {};
+  }
+
+  std::unique_ptr<Sweep<D>> sweep_of(std::int64_t number, Slab<D> slab) const {
+    return std::make_unique<Sweep<D>>(std::move(slab), time(number), time(number + 1));
+  }
+
+  // Goes through the slabs [begin, end) of the families, with one that is empty before them and one after, as
+  // `track` does through all. `make_sweep` is asked for each slab, `pieces_at` for the pieces of the surface
+  // at each step.
+  void pass_slabs(std::int64_t begin, std::int64_t end, const auto& make_sweep, const auto& pieces_at) {
+    const std::int64_t first = std::max<std::int64_t>(begin - 1, 0),
+                       last = std::min(end, result_.graph.steps - 2);
     std::unique_ptr<Sweep<D>> lower;
     for (std::int64_t number = first; number <= last; ++number) {
-      const auto trace = traces_.find(number);
-      Slab<D> slab;
-      slab.has_missing = true; // beside missing samples a family may end at a step that it reaches
-      if (trace != traces_.end()) slab = std::move(*trace->second.slab);
-      auto upper = std::make_unique<Sweep<D>>(std::move(slab), time(number), time(number + 1));
-      if (lower || number == 0) Level<D>(lower.get(), upper.get()).resolve(time(number), builder_);
+      std::unique_ptr<Sweep<D>> upper = make_sweep(number);
+      if (lower || number == 0)
+        Level<D>(lower.get(), upper.get(), pieces_at(number)).resolve(time(number), builder_);
       upper->run(builder_);
       lower = std::move(upper);
     }
-    if (last == result_.graph.steps - 2) Level<D>(lower.get(), nullptr).resolve(time(last + 1), builder_);
-    return {};
+    if (last == result_.graph.steps - 2)
+      Level<D>(lower.get(), nullptr, pieces_at(last + 1)).resolve(time(last + 1), builder_);
   }
 
   StepSource& source_;
