@@ -1,6 +1,7 @@
 #include "core/text.hpp"
 #include "io/mesh_formats.hpp"
 #include "io/parse.hpp"
+#include "mesh/normals.hpp"
 
 #include <array>
 #include <bit>
@@ -21,15 +22,10 @@ constexpr std::size_t facet_bytes = 50;  // normal and corners, 12 floats, then 
 
 // Of length 1, or 0 where the facet has no area.
 Point unit_normal(const std::array<Point, 3>& corners) {
-  Point u, v;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    u[axis] = corners[1][axis] - corners[0][axis];
-    v[axis] = corners[2][axis] - corners[0][axis];
-  }
-  const Point cross{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-  const double length = std::hypot(cross[0], cross[1], cross[2]);
+  const Point normal = triangle_normal(corners);
+  const double length = std::hypot(normal[0], normal[1], normal[2]);
   if (!(length > 0) || !std::isfinite(length)) return {0, 0, 0};
-  return {cross[0] / length, cross[1] / length, cross[2] / length};
+  return {normal[0] / length, normal[1] / length, normal[2] / length};
 }
 
 void append(std::string& record, const Point& point) {

@@ -26,15 +26,9 @@ std::vector<Vector> area_weighted_normals(const Mesh& mesh) {
     for (std::size_t corner = 0; corner < 3; ++corner)
       for (std::size_t k = 0; k < 3; ++k)
         corners[corner][k] = mesh.positions[mesh.simplices[triangle * 3 + corner] * 3 + k];
-    Vector u, v;
-    for (std::size_t k = 0; k < 3; ++k) {
-      u[k] = corners[1][k] - corners[0][k];
-      v[k] = corners[2][k] - corners[0][k];
-    }
+    const Vector normal = triangle_normal(corners);
     for (std::size_t corner = 0; corner < 3; ++corner)
-      for (std::size_t k = 0; k < 3; ++k)
-        normals[mesh.simplices[triangle * 3 + corner]][k] +=
-            u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+      for (std::size_t k = 0; k < 3; ++k) normals[mesh.simplices[triangle * 3 + corner]][k] += normal[k];
   }
   return normals;
 }

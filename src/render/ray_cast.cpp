@@ -141,12 +141,7 @@ class RayCaster {
       for (std::size_t k = 0; k < 3; ++k)
         normal[k] += weights[corner] * static_cast<double>(normals_[3 * vertex + k]);
     }
-    Vector first, second;
-    for (std::size_t k = 0; k < 3; ++k) {
-      first[k] = corners[1][k] - corners[0][k];
-      second[k] = corners[2][k] - corners[0][k];
-    }
-    const bool inside = dot(cross(first, second), direction) > 0; // its outer side looks away
+    const bool inside = dot(triangle_normal(corners), direction) > 0; // its outer side looks away
     normal = unit(normal);
     if (inside)
       for (double& component : normal) component = -component;

@@ -16,18 +16,13 @@ template <int D>
 SimplexMesh<D - 1> placed_at(double time, int axis, const SimplexMesh<D>& mesh,
                              const CutCorners<std::uint64_t>& cut, const CutPlane<D>& plane,
                              Precision precision) {
-  const auto position_of = [&](std::uint64_t vertex) {
-    std::array<double, D> position;
-    for (std::size_t k = 0; k < D; ++k) position[k] = mesh.positions[vertex * D + k];
-    return position;
-  };
   SimplexMesh<D - 1> placed;
   placed.positions.reset(cut.vertices.size() * (D - 1), precision == Precision::f64);
   Array<double> weights;
   weights.reset(cut.vertices.size());
   for (std::size_t vertex = 0; vertex < cut.vertices.size(); ++vertex) {
-    const auto lower = position_of(cut.vertices[vertex].lower),
-               upper = position_of(cut.vertices[vertex].upper);
+    const auto lower = position_of<D>(mesh, cut.vertices[vertex].lower),
+               upper = position_of<D>(mesh, cut.vertices[vertex].upper);
     const auto [first, last] = std::minmax(lower[axis], upper[axis]);
     const double when = std::clamp(time, first, last);
     const PointOnEdge<D> point(plane, lower, lower[axis] - when, upper, upper[axis] - when);

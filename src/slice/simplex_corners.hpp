@@ -31,6 +31,13 @@ struct SortedSimplex {
   }
 };
 
+template <int D>
+std::array<double, D> position_of(const Mesh& mesh, std::uint64_t vertex) {
+  std::array<double, D> position;
+  for (std::size_t k = 0; k < D; ++k) position[k] = mesh.positions[vertex * D + k];
+  return position;
+}
+
 template <std::size_t N>
 std::array<double, N - 1> without(const std::array<double, N>& point, int axis) {
   std::array<double, N - 1> rest;

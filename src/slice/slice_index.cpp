@@ -14,13 +14,6 @@
 namespace hyperiso {
 namespace {
 
-template <int D>
-std::array<double, D> position_of(const Mesh& mesh, std::uint64_t vertex) {
-  std::array<double, D> position;
-  for (std::size_t k = 0; k < D; ++k) position[k] = mesh.positions[vertex * D + k];
-  return position;
-}
-
 // Where simplices stand in the order of an index: by slab of the last axis, within it along a Morton curve.
 template <int D>
 class PlaceInOrder {
