@@ -303,6 +303,10 @@ class SignalsWait {
 
 } // namespace
 
+Error no_memory_to_write(const std::filesystem::path& target) {
+  return {Code::out_of_memory, text("no memory to write ", target.string())};
+}
+
 FileGroup::FileGroup() = default;
 FileGroup::FileGroup(FileGroup&&) noexcept = default;
 FileGroup::~FileGroup() {

@@ -11,7 +11,7 @@
 
 namespace hyperiso {
 
-// Writes beside the target under the name .hyperiso-PROCESS-NUMBER.part and renames at `commit`; until then,
+// Writes beside the target under the name .hyperiso-RANDOM.part and renames at `commit`; until then,
 // and after any failure, what was at the target stays as it was. The temporary file is removed by the
 // destructor, or by `remove_unfinished_files` (hyperiso/io.hpp) when a signal ends the program. A temporary
 // name beside the target works on every file system; O_TMPFILE does not, and needs a name all the same to
@@ -79,5 +79,8 @@ class AtomicFile {
   std::uint64_t flushed_ = 0;     // bytes
   std::function<void()> on_flush_;
 };
+
+// Of a writer that runs out of memory.
+Error no_memory_to_write(const std::filesystem::path& target);
 
 } // namespace hyperiso

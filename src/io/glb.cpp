@@ -456,7 +456,7 @@ Status GlbMovie::write(const std::filesystem::path& path, FileGroup* group) cons
   try {
     return GlbWriter(*this).write(path, group);
   } catch (const std::bad_alloc&) {
-    return Error{Code::out_of_memory, text("no memory to write ", path.string())};
+    return no_memory_to_write(path);
   }
 }
 

@@ -158,7 +158,7 @@ Result<MeshFileWriter> MeshFileWriter::create(int dimension, int simplex_dimensi
     return MeshFileWriter(std::make_unique<Parts>(dimension, simplex_dimension, path, options,
                                                   std::move(*positions), std::move(*simplices)));
   } catch (const std::bad_alloc&) {
-    return Error{Code::out_of_memory, text("no memory to write ", path.string())};
+    return no_memory_to_write(path);
   }
 }
 
@@ -178,7 +178,7 @@ Status MeshFileWriter::append(const Mesh& piece) {
     }
     return parts.append_simplices(piece.simplices);
   } catch (const std::bad_alloc&) {
-    return Error{Code::out_of_memory, text("no memory to write ", parts.path.string())};
+    return no_memory_to_write(parts.path);
   }
 }
 
@@ -192,7 +192,7 @@ Status MeshFileWriter::finish() {
     pages.add(mesh->edges, mesh->edges.size() * sizeof(GridEdge));
     return write_checked_mesh(*mesh, parts_->path, parts_->options, [&] { pages.release(); });
   } catch (const std::bad_alloc&) {
-    return Error{Code::out_of_memory, text("no memory to write ", parts_->path.string())};
+    return no_memory_to_write(parts_->path);
   }
 }
 

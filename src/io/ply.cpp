@@ -8,7 +8,6 @@
 #include <bit>
 #include <cstring>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <set>
 

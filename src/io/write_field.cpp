@@ -91,7 +91,7 @@ Status write_field(const Field& field, const std::filesystem::path& path, const 
       return Error{Code::invalid_argument, text(path.string(), ": there are no samples to write")};
     return write_as(*format, named, path, options.compress);
   } catch (const std::bad_alloc&) {
-    return Error{Code::out_of_memory, text("no memory to write ", path.string())};
+    return no_memory_to_write(path);
   }
 }
 

@@ -34,13 +34,22 @@ constexpr std::uint64_t int_count = std::numeric_limits<std::int32_t>::max();
 constexpr Format formats[] = {
     {"vtu", "segments to 7-simplices in up to 8 dimensions", {1, 7}, 8, any_count, write_any<write_vtu>},
     {"vtp", "segments and triangles in 2 or 3 dimensions", {1, 2}, 3, any_count, write_any<write_vtp>},
-    {"obj", "segments and triangles in 2 or 3 dimensions", {1, 2}, 3, any_count, write_any<write_obj>},
-    {"off", "triangles in 2 or 3 dimensions", {2, 2}, 3, any_count, write_any<write_off>},
     {"ply", "triangles in 2 or 3 dimensions", {2, 2}, 3, int_count, write_any<write_ply>},
     {"stl", "triangles in 2 or 3 dimensions", {2, 2}, 3, UINT32_MAX, write_any<write_stl>},
+    {"obj", "segments and triangles in 2 or 3 dimensions", {1, 2}, 3, any_count, write_any<write_obj>},
+    {"off", "triangles in 2 or 3 dimensions", {2, 2}, 3, any_count, write_any<write_off>},
     {"svg", "lines in 2 dimensions", {1, 1}, 2, any_count, write_svg},
     {"geojson", "lines in 2 dimensions", {1, 1}, 2, any_count, write_geojson},
 };
+
+// "vtu, vtp, ..." of those that `wanted` takes.
+template <class Wanted>
+std::string names_of_formats(const Wanted& wanted) {
+  std::string names;
+  for (const Format& format : formats)
+    if (wanted(format)) names += text(names.empty() ? "" : ", ", format.name);
+  return names;
+}
 
 std::string format_name(const std::filesystem::path& path, const WriteMeshOptions& options) {
   std::string name = options.format.empty() ? path.extension().string() : options.format;
@@ -62,9 +71,8 @@ bool fits(const Format& format, int dimension, int simplex_dimension) {
 
 Error does_not_fit(const Format& format, int dimension, int simplex_dimension,
                    const std::filesystem::path& path) {
-  std::string others;
-  for (const Format& other : formats)
-    if (fits(other, dimension, simplex_dimension)) others += text(others.empty() ? "" : ", ", other.name);
+  const std::string others =
+      names_of_formats([&](const Format& other) { return fits(other, dimension, simplex_dimension); });
   const std::string advice =
       others.empty() ? "no format here does; slice the mesh first" : "formats that do: " + others;
   return Error{Code::file_unsupported,
@@ -82,7 +90,7 @@ Result<const Format*> find_format(int dimension, int simplex_dimension, const st
                  text(path.string(), ": ",
                       name.empty() ? "its name has no suffix to tell the format"
                                    : text("\"", name, "\" is no format for meshes here"),
-                      "; there are vtu, vtp, ply, stl, obj, off, svg and geojson")};
+                      "; there are ", names_of_formats([](const Format&) { return true; }))};
   if (!fits(*format, dimension, simplex_dimension))
     return does_not_fit(*format, dimension, simplex_dimension, path);
   return format;
@@ -145,7 +153,7 @@ Status write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Wri
     if (const auto checked = check(mesh, options); !checked) return checked;
     return write_checked_mesh(mesh, path, options, {});
   } catch (const std::bad_alloc&) {
-    return Error{Code::out_of_memory, text("no memory to write ", path.string())};
+    return no_memory_to_write(path);
   }
 }
 

@@ -7,8 +7,6 @@
 #include "io/parse.hpp"
 
 #include <array>
-#include <bit>
-#include <limits>
 #include <new>
 #include <zlib.h>
 
@@ -114,7 +112,7 @@ Status write_morph(const MorphPieces<D>& pieces, const std::filesystem::path& pa
     options.group = group;
     return write_mesh(morph_mesh(pieces), path, options);
   } catch (const std::bad_alloc&) {
-    return Error{Code::out_of_memory, text("no memory to write ", path.string())};
+    return no_memory_to_write(path);
   }
 }
 

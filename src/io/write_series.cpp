@@ -20,7 +20,7 @@ Status write_series(const std::vector<SeriesEntry>& entries, const std::filesyst
     file->write("</Collection>\n</VTKFile>\n");
     return file->commit(group);
   } catch (const std::bad_alloc&) {
-    return Error{Code::out_of_memory, text("no memory to write ", path.string())};
+    return no_memory_to_write(path);
   }
 }
 

@@ -1,6 +1,5 @@
 #include "render/canvas.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <new>

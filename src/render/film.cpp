@@ -7,7 +7,6 @@
 #include "io/parse.hpp"
 
 #include <cerrno>
-#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -197,7 +196,7 @@ Result<FilmWriter> FilmWriter::create(const std::filesystem::path& path, int wid
       return started.error();
     return FilmWriter(std::move(state));
   } catch (const std::bad_alloc&) {
-    return Error{Code::out_of_memory, text("no memory to write ", path.string())};
+    return no_memory_to_write(path);
   }
 }
 

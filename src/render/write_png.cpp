@@ -1,4 +1,3 @@
-#include "core/text.hpp"
 #include "hyperiso/render.hpp"
 #include "io/atomic_file.hpp"
 
@@ -22,11 +21,10 @@ cairo_status_t write_part(void* file, const unsigned char* data, unsigned length
 } // namespace
 
 Status write_png(const Image& image, const std::filesystem::path& path, FileGroup* group) {
-  const Error no_memory{Code::out_of_memory, text("no memory to write ", path.string())};
   try {
     const std::unique_ptr<cairo_surface_t, Destroy> surface(
         cairo_image_surface_create(CAIRO_FORMAT_RGB24, image.width, image.height));
-    if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) return no_memory;
+    if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) return no_memory_to_write(path);
     unsigned char* data = cairo_image_surface_get_data(surface.get());
     const std::ptrdiff_t stride = cairo_image_surface_get_stride(surface.get());
     const std::uint8_t* pixel = image.pixels.data();
@@ -39,10 +37,10 @@ Status write_png(const Image& image, const std::filesystem::path& path, FileGrou
     auto file = AtomicFile::create(path);
     if (!file) return file.error();
     if (cairo_surface_write_to_png_stream(surface.get(), write_part, &*file) != CAIRO_STATUS_SUCCESS)
-      return no_memory;
+      return no_memory_to_write(path);
     return file->commit(group);
   } catch (const std::bad_alloc&) {
-    return no_memory;
+    return no_memory_to_write(path);
   }
 }
 
