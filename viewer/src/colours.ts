@@ -15,7 +15,7 @@ export function rgb(hex: string): Rgb {
   return [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255) as Rgb;
 }
 
-export function mapColour(name: string, reversed: boolean, share: number): Rgb {
+function mapColour(name: string, reversed: boolean, share: number): Rgb {
   const stops = COLOUR_MAPS[name] ?? COLOUR_MAPS["viridis"]!;
   const place = Math.max(0, Math.min(1, reversed ? 1 - share : share)) * (stops.length - 1);
   const i = Math.min(Math.floor(place), stops.length - 2);
@@ -36,7 +36,7 @@ export function mapTexels(name: string, reversed: boolean): Uint8Array<ArrayBuff
   return texels;
 }
 
-export const PALETTE_SIZE = 64;
+const PALETTE_SIZE = 64;
 
 /// Colours that can be told apart, the first ones best: hues a golden angle apart, in rounds of different
 /// lightness.

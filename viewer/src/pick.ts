@@ -48,7 +48,7 @@ export function pick(app: App, x: number, y: number): (Hit & { triangles: Triang
 }
 
 /// What there is to say about a point of the surface.
-export function describe(app: App, hit: NonNullable<ReturnType<typeof pick>>): string[] {
+function describe(app: App, hit: NonNullable<ReturnType<typeof pick>>): string[] {
   const lines = app.space.axes.map((axis, k) => {
     const scene = hit.weights.reduce((sum, weight, i) => sum + weight * hit.triangles.points[12 * hit.triangle + 4 * i + k]!, 0);
     const step = (axis.maximum - axis.minimum) / 1000;

@@ -60,7 +60,7 @@ function welded(positions: Float32Array): { points: Float32Array; index: Uint32A
   return { points: new Float32Array(points), index };
 }
 
-export function stl(positions: Float32Array): Blob {
+function stl(positions: Float32Array): Blob {
   const count = positions.length / 9;
   const view = new DataView(new ArrayBuffer(84 + 50 * count));
   view.setUint32(80, count, true);
@@ -71,7 +71,7 @@ export function stl(positions: Float32Array): Blob {
   return new Blob([view.buffer], { type: "model/stl" });
 }
 
-export function ply(positions: Float32Array): Blob {
+function ply(positions: Float32Array): Blob {
   const { points, index } = welded(positions);
   const header = "ply\nformat binary_little_endian 1.0\ncomment hyperiso\n" +
     `element vertex ${points.length / 3}\nproperty float x\nproperty float y\nproperty float z\n` +

@@ -99,16 +99,6 @@ export class SceneView {
     this.controls.update();
     this.request();
   }
-  orbit(right: number, up: number): void {
-    const arm = this.camera.position.clone().sub(this.controls.target);
-    arm.applyAxisAngle(new Vector3(0, 0, 1), right);
-    const side = new Vector3().crossVectors(new Vector3(0, 0, 1), arm).normalize();
-    const turned = arm.clone().applyAxisAngle(side, -up);
-    if (Math.hypot(turned.x, turned.y) > 0.02 * turned.length()) arm.copy(turned);
-    this.camera.position.copy(this.controls.target).add(arm);
-    this.controls.update();
-    this.request();
-  }
 
   setProjection(projection: "perspective" | "orthographic"): void {
     const next = projection === "perspective" ? this.perspective : this.orthographic;
@@ -347,7 +337,7 @@ function axisAlong(row: readonly number[]): number {
 }
 
 /// A round step of which `count` or fewer fit into `range`.
-export function niceStep(range: number, count: number): number {
+function niceStep(range: number, count: number): number {
   const rough = range / count;
   const power = 10 ** Math.floor(Math.log10(rough));
   return power * ([1, 2, 5, 10].find((factor) => factor * power >= rough * 0.999) ?? 10);

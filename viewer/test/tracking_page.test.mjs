@@ -224,7 +224,7 @@ describe("the events of a page", () => {
   });
 
   test("stay hidden in the address of the page", async () => {
-    await page.waitForFunction(() => location.hash.includes("hide="));
+    await page.waitForFunction(() => location.hash.includes("hide=") && location.href === hyperiso.link());
     const hash = await page.evaluate(() => location.hash);
     const other = await open("events.html", { hash });
     assert.equal(await other.page.locator('.event-types [aria-pressed="false"]').count(), 2);
