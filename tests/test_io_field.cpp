@@ -2,7 +2,6 @@
 #include "field_files.hpp"
 #include "temporary_folder.hpp"
 
-#include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
 

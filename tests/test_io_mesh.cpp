@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstring>
 #include <gtest/gtest.h>
-#include <limits>
 
 using namespace hyperiso;
 namespace fs = std::filesystem;

@@ -1,6 +1,5 @@
 #include "mesh/exact_integer.hpp"
 
-#include <cmath>
 #include <cstdint>
 #include <gtest/gtest.h>
 #include <limits>

@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 #include <initializer_list>
 #include <limits>
-#include <random>
 #include <vector>
 
 using namespace hyperiso;

@@ -7,7 +7,6 @@
 #include "temporary_folder.hpp"
 
 #include <cmath>
-#include <fstream>
 
 using namespace hyperiso;
 using namespace hyperiso::check;

@@ -3,7 +3,6 @@
 #include "hyperiso/table.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <gtest/gtest.h>

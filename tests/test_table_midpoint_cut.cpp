@@ -1,7 +1,5 @@
 #include "table/midpoint_cut.hpp"
 
-#include <algorithm>
-#include <bit>
 #include <gtest/gtest.h>
 #include <map>
 #include <vector>

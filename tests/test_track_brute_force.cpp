@@ -5,8 +5,6 @@
 #include "hyperiso/interval.hpp"
 #include "track_fields.hpp"
 
-#include <numeric>
-
 namespace hyperiso {
 namespace {
 

@@ -4,7 +4,6 @@
 #include "extract/kernels.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <optional>

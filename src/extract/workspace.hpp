@@ -4,7 +4,6 @@
 #include "extract/kernels.hpp"
 
 #include <memory>
-#include <utility>
 
 namespace hyperiso {
 

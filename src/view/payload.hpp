@@ -3,7 +3,6 @@
 
 #include "hyperiso/mesh.hpp"
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>

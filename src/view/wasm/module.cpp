@@ -7,7 +7,6 @@
 #include "view/surface_of_codes.hpp"
 #include "view/world_axis.hpp"
 
-#include <memory>
 #include <optional>
 
 #define EXPORT(name) __attribute__((export_name(#name))) name
