@@ -160,26 +160,26 @@ class Engine {
     UnitCells& result = memory_.unit_cells[unit];
     result.worker = worker_number;
     MaskWindow& window = plan_.linked ? memory_.windows[plan_.units[unit].window] : worker.window;
-    ScanJob<D> job{&samples_,
-                   &grid_,
-                   &row_kernels_,
-                   &present_,
-                   &table_,
-                   options_.precision == Precision::f64,
-                   options_.keep_edges,
-                   first_row_,
-                   ranges_,
-                   engine_options_.given_masks,
-                   &memory_.numbers,
-                   plan_.units[unit],
-                   &window,
-                   &worker.memory,
-                   &worker.cells,
-                   &worker.pending.back().batch,
-                   &worker,
-                   [](void* owner) { write_current(*static_cast<Worker<D>*>(owner)); },
-                   &result,
-                   false};
+    ScanJob<D> job{.samples = &samples_,
+                   .grid = &grid_,
+                   .row_kernels = &row_kernels_,
+                   .present = &present_,
+                   .table = &table_,
+                   .wide_positions = options_.precision == Precision::f64,
+                   .keep_edges = options_.keep_edges,
+                   .first_row = first_row_,
+                   .ranges = ranges_,
+                   .given = engine_options_.given_masks,
+                   .numbers = &memory_.numbers,
+                   .unit = plan_.units[unit],
+                   .window = &window,
+                   .memory = &worker.memory,
+                   .cells = &worker.cells,
+                   .batch = &worker.pending.back().batch,
+                   .owner = &worker,
+                   .batch_is_large = [](void* owner) { write_current(*static_cast<Worker<D>*>(owner)); },
+                   .result = &result,
+                   .found_missing = false};
     kernels_.scan(job);
     if (job.found_missing) return found_missing_ = true, false;
     ledger_->finish(unit, result.vertices);
@@ -263,8 +263,12 @@ class Engine {
     if (unit.simplices == 0) return;
     auto* corners =
         static_cast<std::byte*>(mesh_.simplices.data()) + first_simplex * D * bytes_per_index(wide_indices_);
-    const EmitJob<D> job{&grid_,  &table_, &memory_.numbers, &memory_.workers[unit.worker].cells, &unit,
-                         corners, true};
+    const EmitJob<D> job{.grid = &grid_,
+                         .table = &table_,
+                         .numbers = &memory_.numbers,
+                         .cells = &memory_.workers[unit.worker].cells,
+                         .unit = &unit,
+                         .corners = corners};
     wide_indices_ ? kernels_.emit_wide(job) : kernels_.emit_narrow(job);
   }
 

@@ -227,7 +227,6 @@ struct EmitJob {
   const Cells<D>* cells;
   const UnitCells* unit;
   void* corners;
-  bool stream; // past the caches
 };
 
 template <int D, Method M>

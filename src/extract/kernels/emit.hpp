@@ -23,15 +23,14 @@ inline void stream_vectors(std::byte* to, const std::byte* from, std::ptrdiff_t 
 #endif
 }
 
-// Writes whole cache lines, past the caches if `stream`, from a buffer that stays in the first of them.
+// Writes whole cache lines, past the caches, from a buffer that stays in the first of them.
 template <class T>
 class LineWriter {
  public:
-  LineWriter(T* to, bool stream) : to_(reinterpret_cast<std::byte*>(to)), stream_(stream) {
-    offset_ = reinterpret_cast<std::uintptr_t>(to_) % line;
-    to_ -= offset_; // the buffer begins like the line that `to` is in
-    skip_ = offset_;
-    out_ = reinterpret_cast<T*>(buffer_ + offset_);
+  explicit LineWriter(T* to)
+      : to_(reinterpret_cast<std::byte*>(to)), skip_(reinterpret_cast<std::uintptr_t>(to) % line) {
+    to_ -= skip_; // the buffer begins like the line that `to` is in
+    out_ = reinterpret_cast<T*>(buffer_ + skip_);
   }
   // Where to write next. There is room for the simplices of a cell, and for a vector that is written beyond
   // them, unless it is full.
@@ -62,10 +61,7 @@ class LineWriter {
       skip_ = 0;
       done = line;
     }
-    if (stream_)
-      stream_vectors(to_ + done, buffer_ + done, bytes - done);
-    else
-      std::memcpy(to_ + done, buffer_ + done, static_cast<std::size_t>(bytes - done));
+    stream_vectors(to_ + done, buffer_ + done, bytes - done);
     to_ += bytes;
     std::memcpy(buffer_, buffer_ + bytes, line);
     out_ = reinterpret_cast<T*>(reinterpret_cast<std::byte*>(out_) - bytes);
@@ -73,8 +69,7 @@ class LineWriter {
 
   std::byte* to_;
   T* out_;
-  std::size_t offset_, skip_;
-  bool stream_;
+  std::size_t skip_; // bytes of the first line that are others'
   alignas(line) std::byte buffer_[full + room_bytes + line];
 };
 
@@ -449,7 +444,7 @@ class CellNumbers<4, Method::hull, std::uint32_t> {
 template <int D, Method M, class Index>
 class Emit {
  public:
-  explicit Emit(const EmitJob<D>& job) : job_(job), writer_(static_cast<Index*>(job.corners), job.stream) {
+  explicit Emit(const EmitJob<D>& job) : job_(job), writer_(static_cast<Index*>(job.corners)) {
     for (unsigned place = 0; place < Edges::column; ++place)
       rows_before_[place] = job.grid->rows_before_top(place);
   }
