@@ -22,6 +22,65 @@ class FlatAxes(Case):
         self.assertGreater(step["simplices"], 0)
 
 
+class FlatVolumes(Case):
+    """Images through time that are stored as volumes of one layer: all is as it is for the images."""
+
+    IMAGES, LAYERS = (["a.raw", "--type", "f32", "--dims", dims] for dims in ("12,11,9", "12,11,1,9"))
+
+    def setUp(self):
+        super().setUp()
+        self.sample("gaussians", "12,11,9", "a.nrrd")
+        self.ok("convert", "a.nrrd", "-o", "a.raw")
+
+    def results(self, verb, *options):
+        """Of images and of layers, without what a clock tells."""
+        for field in (self.IMAGES, self.LAYERS):
+            found = self.ok(verb, *field, *options, "--json").json()
+            for key in ("seconds", "peak_memory_bytes"):
+                found.pop(key, None)
+            yield found
+
+    def test_the_layer_is_left_out(self):
+        for command in (["extract", "--iso", "0.5", "--measure"], ["slice", "--iso", "0.5", "--axis", "y=4.5", "--with", "again=a.raw"],
+                        ["animate", "--iso", "0.5", "--frames", "5", "-o", "a_%d.vtp", "--with", "again=a.raw"],
+                        ["track", "--iso", "0.5"], ["track", "--iso", "0.5", "--seed", "3.5,4.5,4.5"],
+                        ["track", "--iso", "0.5", "--track", "region", "--with", "again=a.raw"], ["morph", "--iso", "0.5"]):
+            images, layers = self.results(*command)
+            self.assertEqual(images, layers, command)
+
+    # The plane has a number for each axis of the file.
+    def test_planes_have_a_number_for_the_layer(self):
+        options = ["--iso", "0.5", "--measure", "--json"]
+        images = self.ok("slice", *self.IMAGES, "--plane", "1,0.5,0.2,6", *options).json()["measure"]
+        layers = self.ok("slice", *self.LAYERS, "--plane", "1,0.5,0,0.2,6", *options).json()["measure"]
+        self.assertEqual(images, layers)
+        self.assertGreater(images["content"], 0)
+
+    def test_tracked_folders_know_it(self):
+        for folder, field in (("images", self.IMAGES), ("layers", self.LAYERS)):
+            self.ok("track", *field, "--iso", "0.5", "-o", folder)
+            self.ok("animate", folder, "--frames", "3", "-o", folder + "_%d.vtp")
+            self.ok("track", "--select", folder + ":0", "--json")
+        tables = [(self.folder / folder / "tracks.csv").read_text() for folder in ("images", "layers")]
+        self.assertEqual(*tables)
+        self.assertGreater(len(tables[0].splitlines()), 1)
+
+    # Then it is the other axes that are left: the surface through time.
+    def test_the_layer_can_be_cut(self):
+        whole = self.ok("extract", *self.IMAGES, "--iso", "0.5", "--json").json()
+        cut = self.ok("slice", *self.LAYERS, "--iso", "0.5", "--axis", "2=0", "--with", "again=a.raw", "-o", "a.vtp",
+                      "--json").json()
+        self.assertEqual(cut["vertices"], whole["vertices"])
+        self.assertGreater(cut["vertices"], 0)
+
+    def test_one_step_is_not_a_layer(self):
+        self.assert_refused(2, "track", "a.raw", "--type", "f32", "--dims", "12,11,9,1", "--iso", "0.5",
+                            words=["12 x 11 x 9 x 1", "--time-axis", "--steps"])
+        self.assert_refused(2, "animate", "a.raw", "--type", "f32", "--dims", "12,11,9,1", "--iso", "0.5", "--frames", "3",
+                            "-o", "b_%d.vtp", words=["one sample"])
+        self.ok("track", "a.raw", "--type", "f32", "--dims", "12,11,9,1", "--time-axis", "2", "--iso", "0.5")
+
+
 class Seeds(Case):
     def extract(self, *arguments):
         return self.ok("extract", "blobs.nrrd", "--iso", "0.5", "--json", *arguments).json()

@@ -176,8 +176,9 @@ struct TrackOptions {
 /// events are those of the interval volume in space and time that `interval` makes, `genus` where one
 /// component changes its Euler characteristic. It costs more, as the inside is filled with simplices.
 ///
-/// The graph does not depend on the number of threads. Errors: those of `extract` and of the source;
-/// invalid_argument for fewer than two steps or a time axis that does not increase.
+/// An axis of space with one sample has no cells, so there is nothing: leave it out of the field, as the
+/// program does. The graph does not depend on the number of threads. Errors: those of `extract` and of the
+/// source; invalid_argument for fewer than two steps or a time axis that does not increase.
 Result<TrackingGraph> track(StepSource& source, double isovalue, const TrackOptions& options = {});
 
 /// The history of a few components, and what it took.

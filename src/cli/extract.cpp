@@ -193,7 +193,7 @@ Outcome measure_slabs(const Extract& options, StepSource& steps, double isovalue
 
 Surface stream_surface(const Extract& options, const OpenedField& opened, double isovalue,
                        const std::string& path, FileGroup& files, ExtractOptions extraction) {
-  StepsWithoutFlatAxes selected(*opened.steps);
+  SelectedSteps& selected = *opened.steps;
   std::optional<FieldSteps> within; // one step is gone through along its own last axis
   if (selected.info().axes.back().count == 1) within.emplace(load_field(options, opened).field);
   StepSource& steps = within ? static_cast<StepSource&>(*within) : selected;

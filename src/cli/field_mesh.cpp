@@ -7,6 +7,7 @@ namespace hyperiso::cli {
 OpenedField open_field(const FieldMeshOptions& options, int lowest, int highest, int codimension) {
   OpenedField opened{std::make_unique<SelectedSteps>(options.input.open(options.machine), options.input), {}};
   opened.info = without_flat_axes(opened.steps->info());
+  opened.steps->leave_out_flat_axes();
   const int dimension = opened.info.dimension();
   check_dimension(dimension, lowest, highest, "the field");
   if (options.output.wanted()) options.output.check(dimension, dimension - codimension, options.output.path);

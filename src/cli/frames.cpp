@@ -196,9 +196,11 @@ std::unique_ptr<Frames> frames_of_field(const FieldOptions& input, double isoval
                                         const PrintOptions& printing) {
   (void)surface.extract_options(machine); // wrong ones are told before anything is read
   auto steps = std::make_unique<SelectedSteps>(input.open(machine), input);
+  steps->leave_out_flat_axes(lowest_animated);
   check_dimension(steps->info().dimension(), lowest_animated, highest_dimension, "the field");
   check_axes(steps->info());
   auto others = data.open(input, machine);
+  for (const NamedSteps& other : others) other.steps->leave_out_flat_axes();
   const int dimension = steps->info().dimension();
   return with_dimension<lowest_animated>(dimension, "the field", [&](auto D) -> std::unique_ptr<Frames> {
     return std::make_unique<FieldFrames<decltype(D)::value>>(std::move(steps), std::move(others), isovalue,
@@ -216,6 +218,7 @@ std::unique_ptr<Frames> frames_with_tracks(const FieldOptions& input, const Trac
   const TrackOptions track_options = tracking.track_options(surface, machine);
   const double isovalue = tracking.isovalue();
   SelectedSteps steps(input.open(machine), input);
+  steps.leave_out_flat_axes(lowest_animated);
   check_dimension(steps.info().dimension(), lowest_animated, highest_dimension, "the field");
   check_axes(steps.info());
   if (folder) folder->check_field(steps.info());
@@ -223,8 +226,10 @@ std::unique_ptr<Frames> frames_with_tracks(const FieldOptions& input, const Trac
   const std::int64_t count = steps.info().axes.back().count;
   const Field field = take(steps.read(0, count));
   std::vector<NamedField> others;
-  for (const NamedSteps& other : data.open(input, machine))
+  for (const NamedSteps& other : data.open(input, machine)) {
+    other.steps->leave_out_flat_axes();
     others.push_back({other.name, take(other.steps->read(0, other.steps->info().axes.back().count))});
+  }
   FieldSteps in_memory(field);
   TrackingGraph graph = tracking.track(in_memory, track_options, printing.quiet);
   if (folder) folder->check_tracks(graph);

@@ -4,6 +4,7 @@
 #include "cli/dispatch.hpp"
 #include "cli/manual.hpp"
 #include "cli/options.hpp"
+#include "cli/point_data.hpp"
 #include "cli/surface.hpp"
 #include "core/memory.hpp"
 #include "hyperiso/morph_files.hpp"
@@ -43,14 +44,13 @@ Mesh surface_of_field(const Morph& options, Outcome& outcome) {
   if (isovalues.size() > 1) fail_usage("--iso: pieces are made at one isovalue");
   outcome.isovalue = isovalues[0];
   (void)options.surface.extract_options(options.machine); // wrong ones are told before anything is read
-  const auto reader = options.input.open(options.machine);
-  const Selection selection = options.input.selection(reader->info());
-  check_input(reader->info().dimension(), options);
-  check_axes(selected(reader->info(), selection));
+  SelectedSteps steps(options.input.open(options.machine), options.input);
+  steps.leave_out_flat_axes(lowest_morphed);
+  check_input(steps.info().dimension(), options);
+  check_axes(steps.info());
 
-  const Stopwatch reading;
-  const Field field = read_selection(*reader, selection);
-  outcome.read_seconds = reading.seconds();
+  const Field field = take(steps.read(0, steps.info().axes.back().count));
+  outcome.read_seconds = steps.read_seconds();
   const Stopwatch extracting;
   ProgressBar bar("extract", options.printing.quiet);
   ExtractOptions extraction = options.surface.extract_options(options.machine);

@@ -3,10 +3,12 @@
 #include "cli/console.hpp"
 #include "cli/failure.hpp"
 #include "cli/parse.hpp"
+#include "cli/surface.hpp"
 #include "core/text.hpp"
 #include "hyperiso/colours.hpp"
 
 #include <filesystem>
+#include <numeric>
 
 namespace hyperiso::cli {
 namespace {
@@ -47,7 +49,21 @@ std::optional<ColourRange> parse_colour_range(const std::string& range) {
 
 SelectedSteps::SelectedSteps(std::unique_ptr<FieldReader> reader, const FieldOptions& input)
     : reader_(std::move(reader)), selection_(input.selection(reader_->info())),
-      info_(selected(reader_->info(), selection_)) {}
+      info_(selected(reader_->info(), selection_)), axes_(info_.axes.size()) {
+  std::iota(axes_.begin(), axes_.end(), std::size_t{0});
+}
+
+void SelectedSteps::leave_out_flat_axes(int lowest) {
+  held_.reset();
+  for (std::size_t axis = info_.axes.size() - 1; axis-- > 0;) {
+    if (info_.axes[axis].count != 1) continue;
+    if (info_.dimension() <= lowest) check_axes(info_);
+    if (info_.world)
+      info_.world = at_coordinate(*info_.world, static_cast<int>(axis), info_.axes[axis].coordinate(0));
+    info_.axes.erase(info_.axes.begin() + static_cast<std::ptrdiff_t>(axis));
+    axes_.erase(axes_.begin() + static_cast<std::ptrdiff_t>(axis));
+  }
+}
 
 Result<Field> SelectedSteps::read(std::int64_t begin, std::int64_t end) {
   if (held_ && begin == held_begin_ && end == held_end_) return *held_;
@@ -61,6 +77,11 @@ Result<Field> SelectedSteps::read(std::int64_t begin, std::int64_t end) {
   } catch (const Failure& failure) {
     return failure.error;
   }
+  std::vector<std::int64_t> strides;
+  for (const std::size_t axis : axes_) strides.push_back(held_->strides[axis]);
+  held_->strides = std::move(strides);
+  held_->info = info_;
+  held_->info.axes.back() = info_.axes.back().cropped(begin, end);
   held_begin_ = begin;
   held_end_ = end;
   read_seconds_ += reading.seconds();

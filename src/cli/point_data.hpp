@@ -16,11 +16,16 @@ class SelectedSteps final : public StepSource {
   Result<Field> read(std::int64_t begin, std::int64_t end) override;
   double read_seconds() const { return read_seconds_; }
 
+  // From now on without its axes of one sample, but for the last. Fails, naming one, if it has no more than
+  // `lowest` axes with it.
+  void leave_out_flat_axes(int lowest = 1);
+
  private:
   std::unique_ptr<FieldReader> reader_;
   Selection selection_;
   FieldInfo info_;
-  std::optional<Field> held_; // steps held_begin_ to held_end_
+  std::vector<std::size_t> axes_; // of the file, those that info_ has
+  std::optional<Field> held_;     // steps held_begin_ to held_end_
   std::int64_t held_begin_ = 0, held_end_ = 0;
   double read_seconds_ = 0;
 };

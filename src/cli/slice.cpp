@@ -269,6 +269,8 @@ void slice_steps(const Slice& options, const Plan& plan, SelectedSteps& steps,
                  const std::vector<std::vector<double>>& levels, std::vector<Outcome>& outcomes) {
   const std::vector<MappedPlane> mapped = mapped_planes(options, plan, steps.info());
   const std::vector<NamedSteps> others = options.data.open(options.input, options.machine);
+  for (const NamedSteps& other : others)
+    if (other.steps->info().dimension() > D) other.steps->leave_out_flat_axes();
   const Progress* progress_of_cut = nullptr;
   FieldSliceOptions how;
   static_cast<ExtractOptions&>(how) = options.surface.extract_options(options.machine);
@@ -291,6 +293,23 @@ void slice_steps(const Slice& options, const Plan& plan, SelectedSteps& steps,
   });
 }
 
+// Of the field and the planes, unless one of these cuts them.
+void leave_out_flat_axes(Plan& plan, SelectedSteps& steps) {
+  std::vector<std::size_t> flat; // the last first
+  for (std::size_t axis = plan.axes.size() - 1; axis-- > 0;)
+    if (plan.axes[axis].count == 1) flat.push_back(axis);
+  for (const std::size_t axis : flat)
+    for (const Plane& plane : plan.planes)
+      if (plane.normal[axis] != 0) return;
+  for (const std::size_t axis : flat)
+    for (Plane& plane : plan.planes) {
+      plane.normal.erase(plane.normal.begin() + static_cast<std::ptrdiff_t>(axis));
+      if (plane.axis > static_cast<int>(axis)) --plane.axis;
+    }
+  steps.leave_out_flat_axes(lowest_sliced);
+  plan.axes = steps.info().axes;
+}
+
 // The names of the axes of the world are those of the field.
 std::vector<Outcome> slice_field(const Slice& options, Plan& plan) {
   if (options.iso.empty() == options.range.empty())
@@ -307,11 +326,12 @@ std::vector<Outcome> slice_field(const Slice& options, Plan& plan) {
   }
   (void)options.surface.extract_options(options.machine); // wrong ones are told before anything is read
   SelectedSteps steps(options.input.open(options.machine), options.input);
+  plan.axes = steps.info().axes;
+  plan.planes = planes_in(options, plan.axes);
+  leave_out_flat_axes(plan, steps);
   const FieldInfo& info = steps.info();
   check_dimension(info.dimension(), lowest_sliced, highest_dimension, "the field");
-  plan.axes = info.axes;
   plan.simplex_dimension = volume ? plan.dimension() : plan.dimension() - 1;
-  plan.planes = planes_in(options, plan.axes);
   plan.has_time = info.has_time;
   std::vector<Outcome> outcomes = outcomes_of(options, plan);
   with_dimension<lowest_sliced>(info.dimension(), "the field", [&](auto dimension) {

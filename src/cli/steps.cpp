@@ -30,29 +30,6 @@ void append(Numbers& whole, const Numbers& piece) {
 
 } // namespace
 
-StepsWithoutFlatAxes::StepsWithoutFlatAxes(StepSource& steps) : steps_(steps), info_(steps.info()) {
-  const std::size_t last = info_.axes.size() - 1;
-  for (std::size_t axis = 0; axis <= last; ++axis)
-    if (axis == last || info_.axes[axis].count != 1) axes_.push_back(axis);
-  for (std::size_t axis = last; axis-- > 0;) {
-    if (info_.axes[axis].count != 1) continue;
-    if (info_.world)
-      info_.world = at_coordinate(*info_.world, static_cast<int>(axis), info_.axes[axis].coordinate(0));
-    info_.axes.erase(info_.axes.begin() + static_cast<std::ptrdiff_t>(axis));
-  }
-}
-
-Result<Field> StepsWithoutFlatAxes::read(std::int64_t begin, std::int64_t end) {
-  auto field = steps_.read(begin, end);
-  if (!field) return field;
-  std::vector<std::int64_t> strides;
-  for (const std::size_t axis : axes_) strides.push_back(field->strides[axis]);
-  field->strides = std::move(strides);
-  field->info = info_;
-  field->info.axes.back() = info_.axes.back().cropped(begin, end);
-  return field;
-}
-
 std::uint64_t step_bytes(const FieldInfo& info) {
   return info.bytes() / static_cast<std::uint64_t>(info.axes.back().count);
 }

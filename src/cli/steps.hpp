@@ -5,19 +5,6 @@
 
 namespace hyperiso::cli {
 
-// A source without its axes of one sample, but for the last.
-class StepsWithoutFlatAxes final : public StepSource {
- public:
-  explicit StepsWithoutFlatAxes(StepSource& steps);
-  const FieldInfo& info() const override { return info_; }
-  Result<Field> read(std::int64_t begin, std::int64_t end) override;
-
- private:
-  StepSource& steps_;
-  FieldInfo info_;
-  std::vector<std::size_t> axes_; // of the source that are kept
-};
-
 // Bytes of one step.
 std::uint64_t step_bytes(const FieldInfo& info);
 

@@ -23,6 +23,8 @@
 namespace hyperiso::cli {
 namespace {
 
+constexpr int lowest_tracked = 3;
+
 struct Track {
   FieldOptions input;
   std::vector<std::string> seeds, with;
@@ -122,8 +124,10 @@ std::string counts_of(const TrackingGraph& graph) {
   return list.empty() ? "none" : list;
 }
 
-std::string report_of(const Track& options, const TrackingGraph& graph, double track_seconds) {
+std::string report_of(const Track& options, const FieldInfo& info, const TrackingGraph& graph,
+                      double track_seconds) {
   Report report;
+  report.add("field", size_and_type(info));
   if (graph.upper_isovalue)
     report.add("range", fmt::format("{} to {}", graph.isovalue, *graph.upper_isovalue));
   else
@@ -140,6 +144,14 @@ std::string report_of(const Track& options, const TrackingGraph& graph, double t
   return report.text();
 }
 
+void check_steps(const FieldInfo& info) {
+  if (info.axes.back().count < 2)
+    fail_usage(text("the field is ", size_and_type(info), ": axis ",
+                    name_of_axis(info.axes, info.axes.size() - 1),
+                    " has one sample, and components are followed from one step to the next; --time-axis "
+                    "names the axis that is time, --steps chooses two or more"));
+}
+
 int run(Track options, const CLI::App& verb) {
   std::optional<TrackedFolder> earlier;
   if (options.input.paths.empty()) {
@@ -153,10 +165,13 @@ int run(Track options, const CLI::App& verb) {
     fail_usage("--with: with --seed or --select no features are measured");
   const TrackedFolder folder = folder_of(options);
   SelectedSteps steps(options.input.open(options.machine), options.input);
+  steps.leave_out_flat_axes(lowest_tracked);
+  check_steps(steps.info());
   if (earlier) earlier->check_field(steps.info());
   PointDataOptions beside;
   beside.with = options.with;
   const std::vector<NamedSteps> others = beside.open(options.input, options.machine);
+  for (const NamedSteps& other : others) other.steps->leave_out_flat_axes();
   for (const NamedSteps& other : others) tracking.with.push_back({other.name, other.steps.get()});
   const Stopwatch watch;
   const TrackingGraph graph = options.tracking.track(steps, tracking, options.printing.quiet,
@@ -173,7 +188,7 @@ int run(Track options, const CLI::App& verb) {
     object["peak_memory_bytes"] = peak_memory();
     print_json(object);
   } else {
-    print(report_of(options, graph, track_seconds));
+    print(report_of(options, steps.info(), graph, track_seconds));
   }
   return 0;
 }

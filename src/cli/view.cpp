@@ -191,8 +191,7 @@ void describe(const FieldInfo& info, Content& content) {
 }
 
 // Of a field that does not fit into memory, step by step; the surface has to.
-void stream_field(const View& options, std::uint64_t size, SelectedSteps& selected, Content& content) {
-  StepsWithoutFlatAxes steps(selected);
+void stream_field(const View& options, std::uint64_t size, SelectedSteps& steps, Content& content) {
   const double isovalue = *content.page.isovalue;
   ExtractOptions extraction = options.surface.extract_options(options.machine);
   extraction.keep_edges = options.track;
@@ -213,7 +212,7 @@ void stream_field(const View& options, std::uint64_t size, SelectedSteps& select
   if (content.mesh->simplex_count() == 0 && !options.printing.quiet)
     print_warning(why_empty(steps, isovalue));
   track_components(options, *thinned, content);
-  content.read_seconds = selected.read_seconds();
+  content.read_seconds = steps.read_seconds();
   content.extract_seconds = watch.seconds() - content.read_seconds;
   describe(thinned->info(), content);
 }
@@ -241,6 +240,7 @@ void read_field(const View& options, std::uint64_t size, Content& content) {
   const FieldInfo& info = steps.info();
   check_extent(options, info);
   content.page.part = part_of(info);
+  steps.leave_out_flat_axes();
   if (options.folder) options.folder->check_field(info);
   content.page.isovalue = isovalues[0];
   const bool of_surface = options.payload.empty() || options.payload == "mesh";
