@@ -17,15 +17,14 @@ class StepMask {
     bits_.resize(rows_ * words_);
     uniform_.resize(rows_);
     constexpr std::int64_t worth_a_thread = 1 << 19; // samples
-    const auto planes = rows_ / static_cast<std::size_t>(step.dims()[1]);
-    std::atomic<std::size_t> next_plane = 0;
+    const int workers = std::clamp(static_cast<int>(step.grid.samples() / worth_a_thread), 1, threads);
+    std::vector<PlanePass<T, S>> passes(static_cast<std::size_t>(workers), {step, isovalue, inside});
     std::atomic<bool> has_missing = false;
-    run_workers(std::clamp(static_cast<int>(step.grid.samples() / worth_a_thread), 1, threads), [&](int) {
-      PlanePass<T, S> pass(step, isovalue, inside);
-      for (std::size_t plane; (plane = next_plane++) < planes;) {
-        const std::size_t row = plane * static_cast<std::size_t>(step.dims()[1]);
-        if (pass.has_missing(plane, &bits_[row * words_], &uniform_[row])) has_missing = true;
-      }
+    const auto plane_rows = static_cast<std::size_t>(step.dims()[1]);
+    share_out(workers, rows_ / plane_rows, [&](int worker, std::size_t plane) {
+      const std::size_t row = plane * plane_rows;
+      if (passes[static_cast<std::size_t>(worker)].has_missing(plane, &bits_[row * words_], &uniform_[row]))
+        has_missing = true;
     });
     has_missing_ = has_missing;
   }
