@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <span>
 
 namespace hyperiso {
 
@@ -42,6 +43,16 @@ const char* glyph_shape(EventType type) {
   }
 }
 
+// Where the curve of a connection from (x1, y1) to (x2, y2) is at x: of the cubic with both handles half way.
+double height_of_curve(double x1, double y1, double x2, double y2, double x) {
+  double low = 0, high = 1;
+  for (int halving = 0; halving < 20; ++halving) {
+    const double s = (low + high) / 2, at = x1 + (x2 - x1) * s * (1.5 - 1.5 * s + s * s);
+    (at < x ? low : high) = s;
+  }
+  return y1 + (y2 - y1) * low * low * (3 - 2 * low);
+}
+
 class GraphPicture {
  public:
   explicit GraphPicture(const TrackingGraph& graph)
@@ -69,6 +80,8 @@ class GraphPicture {
     body += "</g>\n";
     for (std::size_t track = 0; track < graph_.tracks.size(); ++track)
       if (is_shown(static_cast<std::int64_t>(track))) body += ribbon(track);
+    for (std::size_t track = 0; track < graph_.tracks.size(); ++track)
+      if (is_shown(static_cast<std::int64_t>(track))) body += label(track);
     body += glyphs();
     return svg_start(width, bottom_ + 84, title) + body + legend() + "</svg>\n";
   }
@@ -83,6 +96,17 @@ class GraphPicture {
   }
   double half_width(double volume) const {
     return std::max(0.7, 0.36 * pitch_ * (largest_ > 0 ? std::sqrt(volume / largest_) : 0));
+  }
+
+  // Where a track is drawn, also where it leaves its lane to meet a relative's.
+  double y_at(std::int64_t id, double x) const {
+    const Track& track = graph_.tracks[index(id)];
+    const double start = time_.x(track.start_time), end = time_.x(track.end_time), turn = bend(track);
+    if (const auto from = parent(track); from && x < start + turn)
+      return height_of_curve(start, y(*from), start + turn, y(id), x);
+    if (const auto into = heir(track); into && x > end - turn)
+      return height_of_curve(end - turn, y(id), end, y(*into), x);
+    return y(id);
   }
 
   // How far a ribbon leaves its lane to meet a relative's.
@@ -141,6 +165,9 @@ class GraphPicture {
     const double end = time_.x(track.end_time) - (heir(track) ? bend(track) : 0);
     std::vector<std::pair<double, double>> outline; // x, half width
     const auto& rows = rows_[number];
+    // What is left between two bends is no wider than long.
+    const double widest = parent(track) || heir(track) ? std::max(2.0, (end - start) / 2) : pitch_;
+    const auto half_width = [&](double volume) { return std::min(widest, this->half_width(volume)); };
     const auto tapers = [](const std::string& type) {
       return type == "birth" || type == "death" || type == "enter" || type == "exit";
     };
@@ -158,15 +185,22 @@ class GraphPicture {
       path += text(path.empty() ? "M" : "L", pixel(x), " ", pixel(y(id) - half));
     for (auto point = outline.rbegin(); point != outline.rend(); ++point)
       path += text("L", pixel(point->first), " ", pixel(y(id) + point->second));
-    std::string svg =
-        text("<path d=\"", path, "Z\" fill=\"", colour_of(id), "\">",
-             tooltip(text("track ", id, ": ", track.start_type, " at ", track.start_time, ", ",
-                          track.end_type, " at ", track.end_time, ", largest volume ", track.max_volume)),
-             "</path>\n");
+    return text("<path d=\"", path, "Z\" fill=\"", colour_of(id), "\">",
+                tooltip(text("track ", id, ": ", track.start_type, " at ", track.start_time, ", ",
+                             track.end_type, " at ", track.end_time, ", largest volume ", track.max_volume)),
+                "</path>\n");
+  }
+
+  // On a white edge, so that it can be read where a line passes behind it.
+  std::string label(std::size_t number) const {
+    const Track& track = graph_.tracks[number];
+    const auto id = static_cast<std::int64_t>(number);
     const double size = std::clamp(pitch_ * 0.62, 7.0, 12.0);
-    const double before = parent(track) ? start - 6 : start - glyph_ - 3;
-    return svg + text("<text x=\"", pixel(before), "\" y=\"", pixel(y(id) + size * 0.35), "\" font-size=\"",
-                      pixel(size), "\" text-anchor=\"end\" fill=\"#555\">", id, "</text>\n");
+    const double start = time_.x(track.start_time);
+    const double before = parent(track) ? start + bend(track) - 6 : start - glyph_ - 3;
+    return text("<text x=\"", pixel(before), "\" y=\"", pixel(y(id) + size * 0.35), "\" font-size=\"",
+                pixel(size), "\" text-anchor=\"end\" fill=\"#555\" stroke=\"#fff\" stroke-width=\"2.5\" ",
+                "stroke-linejoin=\"round\" paint-order=\"stroke\">", id, "</text>\n");
   }
 
   // Cut links, dashed.
@@ -189,41 +223,87 @@ class GraphPicture {
                 glyph_shape(type), words.empty() ? "" : tooltip(words), "</g>\n");
   }
 
-  // Marks of one kind that would cover each other on a lane are drawn as one.
-  std::string glyphs() {
-    struct Mark {
-      EventType type;
-      double x, y;
-      std::string words;
-      int more;
-    };
-    std::vector<Mark> marks;
-    std::map<std::pair<std::int64_t, EventType>, std::size_t> last_on; // lane: place in marks
-    for (const TrackingEvent& event : graph_.events) {
-      if (event.simplified || *glyph_shape(event.type) == 0) continue;
-      const auto& tracks =
-          event.type == EventType::split || event.tracks_out.empty() ? event.tracks_in : event.tracks_out;
-      const auto shown = std::ranges::find_if(tracks, [&](std::int64_t track) { return is_shown(track); });
-      if (shown == tracks.end()) continue;
-      types_.insert(event.type);
-      const double x = time_.x(event.time);
-      const auto [last, is_first] =
-          last_on.try_emplace({lanes_.lane_of_track[index(*shown)], event.type}, marks.size());
-      if (!is_first && x - marks[last->second].x < 1.6 * glyph_) {
-        ++marks[last->second].more;
-        continue;
+  // Something that happens to one track as it goes on.
+  static bool is_passed(EventType type) { return type == EventType::genus || type == EventType::touch; }
+
+  struct Mark {
+    EventType type;
+    double x, y;
+    std::string words;
+    int more = 0;
+  };
+
+  // In rows of a lane, if it is high enough: where tracks begin, end, meet and part stands in the middle,
+  // what would cover it above or below. Marks of one kind that still cover each other are drawn as one.
+  class MarksOnLane {
+   public:
+    MarksOnLane(double glyph, double pitch) : glyph_(glyph), has_rows_(pitch > 3 * row_height()) {}
+
+    void add(Mark mark) {
+      const double middle = mark.y;
+      const double offsets[] = {0, -row_height(), row_height()};
+      for (const double offset : std::span(offsets, has_rows_ && is_passed(mark.type) ? 3 : 1)) {
+        mark.y = middle + offset;
+        if (find_near(mark, 2 * glyph_, row_height() / 2, [](const Mark&) { return true; })) continue;
+        marks_.emplace(mark.x, std::move(mark));
+        return;
       }
-      last->second = marks.size();
-      marks.push_back(
-          {event.type, x, y(*shown),
-           text(name_of(event.type), " at ", event.time, ", position ", joined(event.position, ", "), "; in ",
-                joined(event.tracks_in, " "), "; out ", joined(event.tracks_out, " ")),
-           0});
+      mark.y = middle;
+      const auto is_same = [&](const Mark& other) { return other.type == mark.type; };
+      if (Mark* same = find_near(mark, 1.6 * glyph_, 1.5 * row_height(), is_same))
+        ++same->more;
+      else
+        marks_.emplace(mark.x, std::move(mark));
     }
+    const std::multimap<double, Mark>& marks() const { return marks_; }
+
+   private:
+    double row_height() const { return 2.3 * glyph_; }
+    template <class Condition>
+    Mark* find_near(const Mark& mark, double along, double across, Condition&& condition) {
+      for (auto other = marks_.upper_bound(mark.x - along);
+           other != marks_.end() && other->first < mark.x + along; ++other)
+        if (std::abs(other->second.y - mark.y) < across && condition(other->second)) return &other->second;
+      return nullptr;
+    }
+
+    double glyph_;
+    bool has_rows_;
+    std::multimap<double, Mark> marks_; // by x
+  };
+
+  std::optional<std::int64_t> track_of(const TrackingEvent& event) const {
+    if (event.simplified || *glyph_shape(event.type) == 0) return std::nullopt;
+    const auto& tracks =
+        event.type == EventType::split || event.tracks_out.empty() ? event.tracks_in : event.tracks_out;
+    const auto shown = std::ranges::find_if(tracks, [&](std::int64_t track) { return is_shown(track); });
+    if (shown == tracks.end()) return std::nullopt;
+    return *shown;
+  }
+
+  Mark mark_of(const TrackingEvent& event, std::int64_t track) const {
+    const double x = time_.x(event.time);
+    return {event.type, x, is_passed(event.type) ? y_at(track, x) : y(track),
+            text(name_of(event.type), " at ", event.time, ", position ", joined(event.position, ", "),
+                 "; in ", joined(event.tracks_in, " "), "; out ", joined(event.tracks_out, " "))};
+  }
+
+  std::string glyphs() {
+    std::map<std::int64_t, MarksOnLane> lanes;
+    for (const bool passed : {false, true})
+      for (const TrackingEvent& event : graph_.events) {
+        const auto track = track_of(event);
+        if (!track || is_passed(event.type) != passed) continue;
+        types_.insert(event.type);
+        MarksOnLane& lane =
+            lanes.try_emplace(lanes_.lane_of_track[index(*track)], glyph_, pitch_).first->second;
+        lane.add(mark_of(event, *track));
+      }
     std::string svg;
-    for (const Mark& drawn : marks)
-      svg += mark(drawn.type, drawn.x, drawn.y, glyph_,
-                  drawn.more == 0 ? drawn.words : text(drawn.words, "; and ", drawn.more, " more"));
+    for (const auto& [number, lane] : lanes)
+      for (const auto& [x, drawn] : lane.marks())
+        svg += mark(drawn.type, drawn.x, drawn.y, glyph_,
+                    drawn.more == 0 ? drawn.words : text(drawn.words, "; and ", drawn.more, " more"));
     return svg;
   }
 
