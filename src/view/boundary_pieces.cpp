@@ -1,5 +1,6 @@
 #include "core/text.hpp"
 #include "hyperiso/view.hpp"
+#include "mesh/attributes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -32,16 +33,11 @@ class BoundaryEdges {
   std::array<std::int64_t, D + 1> lifted_;
 };
 
-const std::vector<std::int32_t>& tracks_of(const Mesh& region) {
-  const auto named = [](const Attribute& attribute) { return attribute.name == "track_id"; };
-  return std::get<std::vector<std::int32_t>>(std::ranges::find_if(region.attributes, named)->values);
-}
-
 template <int D>
 std::vector<TrackingGraph::Piece> boundary_pieces(const Mesh& region, std::span<const Axis> axes,
                                                   const std::vector<std::int64_t>& feature_of_track) {
   const BoundaryEdges<D> edges(axes);
-  const std::vector<std::int32_t>& tracks = tracks_of(region);
+  const auto& tracks = std::get<std::vector<std::int32_t>>(track_of_simplices(region)->values);
   const auto corners = static_cast<std::size_t>(region.simplex_dimension + 1);
   std::vector<std::int64_t> features(region.vertex_count(), -1);
   for (std::size_t corner = 0; corner < region.simplices.size(); ++corner)

@@ -10,8 +10,6 @@
 namespace hyperiso {
 namespace {
 
-constexpr int top_level = 65535;
-
 // The steps from each level to the next as low bytes and then high bytes: neighbours are alike, so that most
 // bytes are small, and bytes of one kind beside each other compress best.
 void append_steps(std::span<const std::uint16_t> levels, std::vector<unsigned char>& bytes) {

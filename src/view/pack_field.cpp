@@ -84,7 +84,7 @@ CodeScale scale_for(const Field& field, double isovalue, const std::vector<std::
       high = std::max(high, value);
     });
     if (low > high) low = high = isovalue;
-    const double top = scale.special ? CodeScale::minus_infinity - 1 : 65535;
+    const double top = scale.top();
     // Rounded to one side of the isovalue, the samples may take one code more than their range.
     // Neither beyond all numbers nor 0, whatever the range.
     scale.step =
@@ -107,7 +107,7 @@ std::uint16_t code_of(T value_, bool is_inside, const CodeScale& scale) {
     const auto value = static_cast<double>(value_);
     if (std::isnan(value)) return CodeScale::missing;
     if (std::isinf(value)) return value > 0 ? CodeScale::infinity : CodeScale::minus_infinity;
-    const double top = scale.special ? CodeScale::minus_infinity - 1 : 65535;
+    const double top = scale.top();
     double low = 0, high = top;
     if (scale.isovalue >= 0 && scale.isovalue <= top) {
       const bool up = is_inside == (scale.inside == Inside::above);

@@ -6,8 +6,6 @@
 namespace hyperiso {
 namespace {
 
-constexpr int top_level = 65535;
-
 // Bit b of `number` at bit 4 b: the digits of a Morton number of up to four axes.
 std::uint64_t spread(std::uint64_t number) {
   number = (number | number << 24) & 0x000000ff000000ff;

@@ -9,6 +9,8 @@
 
 namespace hyperiso {
 
+inline constexpr int top_level = 65535; // of coordinates and of attributes
+
 // How coordinates along one axis become levels: coordinate = origin + level * scale.
 struct Quantiser {
   double origin = 0;
@@ -26,7 +28,7 @@ Quantiser quantiser_of(const Axis& axis, double minimum, double maximum);
 struct EncodedAttribute {
   std::string name;
   bool is_label = false;
-  double minimum = 0, maximum = 0;   // of a scalar: level 0 and level 65535
+  double minimum = 0, maximum = 0;   // of a scalar: level 0 and the top level
   std::vector<std::int64_t> labels;  // of a label: what each level stands for, ascending
   std::vector<std::uint16_t> levels; // one per vertex of the mesh
 };

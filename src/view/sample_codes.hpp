@@ -23,11 +23,10 @@ struct CodeScale {
   bool is_inside(std::uint16_t code) const {
     return inside == Inside::above ? code >= isovalue : code <= isovalue;
   }
+  // The highest code of a number.
+  std::uint16_t top() const { return special ? minus_infinity - 1 : narrow ? 255 : 65535; }
   // A code on the far side of all others on its side.
-  std::uint16_t far(bool is_inside) const {
-    const std::uint16_t top = special ? minus_infinity - 1 : narrow ? 255 : 65535;
-    return is_inside == (inside == Inside::above) ? top : 0;
-  }
+  std::uint16_t far(bool is_inside) const { return is_inside == (inside == Inside::above) ? top() : 0; }
 };
 
 // The classes of samples, of which a band keeps the borders.
