@@ -305,6 +305,17 @@ class Output(Case):
             self.assert_refused(2, "convert", "s.pvd", "-o", path, words=["would replace s.pvd"])
             self.assert_refused(2, "convert", "s_0000.vti", "s_0001.vti", "-o", path, words=["would replace s_0000.vti"])
         self.ok("convert", "s_0000.vti", "s_0001.vti", "-o", "t.pvd")
+        for step in ("s_0001.vti", "s_%04d.vti"):
+            self.assert_refused(2, "extract", "s.pvd", "--iso", "0.5", "--format", "vtu", "-o", step, words=["would replace s_000"])
+        self.ok("convert", field, "-o", "samples.raw")
+        header = "NRRD0004\ntype: float\ndimension: 4\nsizes: 6 6 6 3\nendian: little\nencoding: raw\ndata file: samples.raw\n"
+        (self.folder / "a.nhdr").write_text(header)
+        (self.folder / "a.series").write_text('{"files": [{"name": "s_0000.vti", "time": 0}, {"name": "s_0001.vti", "time": 1}]}')
+        self.assert_refused(2, "convert", "a.nhdr", "-o", "samples.raw", words=["would replace samples.raw"])
+        self.assert_refused(2, "extract", WATER, "--iso", "0.5", "--with", "b=a.nhdr", "--format", "vtu", "-o", "samples.raw",
+                            words=["would replace samples.raw"])
+        self.assert_refused(2, "convert", "a.series", "-o", "s_0001.vti", words=["would replace s_0001.vti"])
+        self.ok("convert", "a.nhdr", "-o", "other.raw")
         self.ok("extract", field, "--iso", "0.5", "-o", "m_007.vtu")
         self.assert_refused(2, "slice", "m_007.vtu", "--time", "0.5", "-o", "m_%03d.vtu", words=["would replace m_007.vtu"])
         self.ok("slice", "m_007.vtu", "--time", "0.5", "-o", "m_%02d.vtu")

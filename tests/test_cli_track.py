@@ -52,6 +52,12 @@ class Tracking(Case):
         self.assert_refused(1, "track", path, "--iso", "0.5", *memory, "-o", "tracks", words=["8 MiB", "--memory"])
         self.assertEqual(self.files(), ["field.nrrd"])
 
+    def test_fields_of_too_many_or_too_few_axes(self):
+        path = self.sample("gaussians", "6,6,6,5,4")
+        self.assert_refused(2, "track", path, "--iso", "0.5", words=["6 x 6 x 6 x 5 x 4", "--crop ,,,0:1"])
+        self.ok("track", path, "--iso", "0.5", "--crop", ",,,0:1", "-o", "tracks")
+        self.assert_refused(2, "track", self.sample("ball", "9,9"), "--iso", "0.5", words=["9 x 9"])
+
     def test_other_fields_are_columns(self):
         path = self.sample("gaussians", "12,12,12,5")
         self.ok("track", path, "--iso", "0.5", "--with", f"again={path}", "-o", "all")

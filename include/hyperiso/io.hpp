@@ -44,8 +44,13 @@ class FieldReader : public StepSource {
   Result<Field> read(std::int64_t begin, std::int64_t end) override = 0;
   Result<Field> read() { return read(0, info_.axes.back().count); }
 
+  /// The files with the samples, where the file that was opened names others: data files of an NRRD header,
+  /// the steps of a series.
+  const std::vector<std::filesystem::path>& files() const { return files_; }
+
  protected:
   FieldInfo info_;
+  std::vector<std::filesystem::path> files_;
 };
 
 /// Opens a field. One path, by its suffix:

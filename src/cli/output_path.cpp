@@ -51,12 +51,22 @@ std::vector<std::string> values_of(const CLI::App& verb, const char* option) {
   return found && found->count() > 0 ? found->results() : std::vector<std::string>{};
 }
 
-// The files that the verb was told to read, as far as they are named.
+bool names_files(const fs::path& input) {
+  constexpr const char* suffixes[] = {".nrrd", ".nhdr", ".pvd", ".series"};
+  return std::ranges::find(suffixes, input.extension().string()) != std::end(suffixes);
+}
+
+// The files that the verb was told to read, and those that they name.
 std::vector<std::string> inputs_of(const CLI::App& verb) {
   std::vector<std::string> inputs = values_of(verb, "INPUT");
   for (const std::string& given : values_of(verb, "--with")) {
     const auto equals = given.find('=');
     inputs.push_back(equals == std::string::npos ? given : given.substr(equals + 1));
+  }
+  for (std::size_t named = inputs.size(); named-- > 0;) {
+    if (!names_files(inputs[named])) continue;
+    if (const auto reader = open_field({inputs[named]})) // else the verb says why not
+      for (const fs::path& file : (*reader)->files()) inputs.push_back(file.string());
   }
   return inputs;
 }

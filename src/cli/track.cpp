@@ -23,7 +23,7 @@
 namespace hyperiso::cli {
 namespace {
 
-constexpr int lowest_tracked = 3;
+constexpr int lowest_tracked = 3, highest_tracked = 4;
 
 struct Track {
   FieldOptions input;
@@ -145,6 +145,10 @@ std::string report_of(const Track& options, const FieldInfo& info, const Trackin
 }
 
 void check_steps(const FieldInfo& info) {
+  if (info.dimension() < lowest_tracked || info.dimension() > highest_tracked)
+    fail_usage(text("the field is ", size_and_type(info),
+                    ": components are followed on 2 or 3 axes of space and through time, the last axis",
+                    info.dimension() > highest_tracked ? "; --crop ,,,0:1 leaves one sample of axis 3" : ""));
   if (info.axes.back().count < 2)
     fail_usage(text("the field is ", size_and_type(info), ": axis ",
                     name_of_axis(info.axes, info.axes.size() - 1),

@@ -120,6 +120,8 @@ OpenedField open_nrrd(const std::filesystem::path& path, const ReadOptions& opti
   auto source = data.files == 0 ? open_data(std::move(*file), header->end, data, type, *bytes)
                                 : open_data_files(path, data, type, *bytes);
   if (!source) return source.error();
+  for (std::uint64_t i = 0; i < data.files; ++i)
+    content->field.files.push_back(path.parent_path() / data.file_name(i));
   const bool swap = data.big_endian != (std::endian::native == std::endian::big);
   return read_stored(std::move(content->field), std::move(*source), swap, path, options);
 }

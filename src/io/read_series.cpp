@@ -53,6 +53,7 @@ class SeriesReader final : public FieldReader {
     info_.axes.push_back(std::move(times));
     info_.has_time = true;
     if (info_.world) info_.world = with_time(*info_.world);
+    for (const Entry& entry : entries_) files_.push_back(entry.file);
   }
 
   Result<Field> read(std::int64_t begin, std::int64_t end) override {

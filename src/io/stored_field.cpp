@@ -44,11 +44,13 @@ Affine reordered(const Affine& world, const std::vector<std::size_t>& order) {
 
 class StoredFieldReader final : public FieldReader {
  public:
-  StoredFieldReader(FieldInfo info, std::vector<std::size_t> order, std::unique_ptr<ByteSource> source,
-                    bool swap_bytes, std::filesystem::path path, std::uint64_t memory_limit)
+  StoredFieldReader(FieldInfo info, std::vector<std::filesystem::path> files, std::vector<std::size_t> order,
+                    std::unique_ptr<ByteSource> source, bool swap_bytes, std::filesystem::path path,
+                    std::uint64_t memory_limit)
       : order_(std::move(order)), source_(std::move(source)), swap_bytes_(swap_bytes), path_(std::move(path)),
         memory_limit_(memory_limit) {
     info_ = std::move(info);
+    files_ = std::move(files);
     for (std::size_t axis = 0; axis < order_.size(); ++axis) {
       const std::int64_t count = info_.axes[axis].count;
       (order_[axis] < order_.back() ? inner_ : order_[axis] > order_.back() ? outer_ : steps_) *= count;
@@ -235,8 +237,9 @@ Result<std::unique_ptr<FieldReader>> read_stored(StoredField stored, std::unique
   info.has_time = last.has_value();
   if (stored.world) info.world = reordered(*stored.world, order);
   for (const std::size_t axis : order) info.axes.push_back(std::move(stored.axes[axis]));
-  return std::unique_ptr<FieldReader>(std::make_unique<StoredFieldReader>(
-      std::move(info), order, std::move(source), swap_bytes, path, options.memory_limit));
+  return std::unique_ptr<FieldReader>(
+      std::make_unique<StoredFieldReader>(std::move(info), std::move(stored.files), order, std::move(source),
+                                          swap_bytes, path, options.memory_limit));
 }
 
 Status check_range(const FieldInfo& info, std::int64_t begin, std::int64_t end,

@@ -20,6 +20,7 @@ struct StoredField {
   std::optional<int> time_axis; // number of the axis that the file says is time
   // Axis coordinates to world; row and column k belong to axis k of the file.
   std::optional<Affine> world;
+  std::vector<std::filesystem::path> files; // that have the samples, if it is not this one
 };
 
 // Time where a file says nothing of its axes: the last of four or more.
