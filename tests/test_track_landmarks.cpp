@@ -31,8 +31,10 @@ struct RandomSlab {
     const auto mask = [&](std::int64_t step) {
       return std::make_shared<const StepMask>(view.at_index(D - 1, step), 0.0, Inside::above);
     };
-    Slab<D> slab(std::make_unique<MaskedCells<D>>(march_table<D>(method, {}), method,
+    Slab<D> slab(std::make_unique<MaskedCells<D>>(march_table<D>(method, {}),
                                                   Crossings<D>(view, 0.0, mask(0), mask(1))));
+    slab.add_searched(SIZE_MAX, false);
+    slab.add_searched(SIZE_MAX, true);
     describe(slab, SlabSamples<double, D>(view, 0.0));
     slab.unfold_all();
     return slab;
@@ -59,14 +61,16 @@ int expect_names_of_components(const Parts& parts, const std::vector<std::uint32
     });
     for (const auto edge : edges) united.unite(edges[0], edge);
   }
-  const auto landmarks = parts.slab.landmarks(parts.moment, parts.direction, Parts::of_rim);
+  const auto* const landmarks = parts.slab.landmarks(Parts::of_rim);
   std::map<std::uint64_t, std::pair<std::uint64_t, int>> component_of_name;
-  for (const auto& [edge, place] : number)
-    if (const auto name = landmarks->name(parts.slab.edge(edge.first), parts.slab.edge(edge.second))) {
+  for (const auto& [edge, place] : number) {
+    if (parts.slab.edge(edge.second) != parts.slab.edge(edge.first) + parts.slab.step_offset) continue;
+    if (const auto name = landmarks->name(parts.slab.edge(edge.first))) {
       const auto [found, is_new] = component_of_name.try_emplace(*name, united.find(place), 0);
       ++found->second.second;
       EXPECT_EQ(found->second.first, united.find(place));
     }
+  }
   return static_cast<int>(
       std::ranges::count_if(component_of_name, [](const auto& entry) { return entry.second.second > 1; }));
 }

@@ -419,14 +419,14 @@ class Level {
 
     // Of curves that pass triangles with a corner that is wanted.
     template <class IsWanted>
-    std::int64_t rims(const Side& side, Direction direction, IsWanted&& is_wanted) const {
+    std::int64_t rims(const Side& side, Direction direction, IsWanted&& is_wanted) const requires(C == 4) {
       std::vector<SimplexNumber> simplices;
       for (const auto& component : side.components)
         simplices.insert(simplices.end(), component.begin(), component.end());
       const bool before = direction == Direction::before;
       Sweep<C>* const sweep = before ? level_.lower_ : level_.upper_;
       const double moment = before ? 1 : 0;
-      return count_rims({sweep->slab, moment, direction}, simplices, [&](Vertex vertex) {
+      return sweep->count_rims(simplices, moment, direction, [&](Vertex vertex) {
         return sweep->slab.time(vertex) == moment && is_wanted(vertex);
       });
     }

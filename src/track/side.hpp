@@ -9,6 +9,8 @@
 
 namespace hyperiso::track_detail {
 
+enum class Direction { before, after };
+
 inline bool is_beyond(double time, double moment, Direction direction) {
   return direction == Direction::before ? time < moment : time > moment;
 }

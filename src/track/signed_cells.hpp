@@ -11,15 +11,21 @@ namespace hyperiso::track_detail {
 // numbered as its lowest sample. Where the signs and times come from is for others to say.
 template <int D>
 class SignedCells {
+  using Index = std::array<std::int64_t, D>;
+
  public:
+  using Ends = GridEdgeEnds<D>;
+
   SignedCells(const MarchTable<D>& table, const std::array<std::int64_t, D>& dims)
       : table_(table), dims_(dims) {
     for (unsigned upper = 1; upper < 1u << D; ++upper)
       for (int axis = 0; axis < D; ++axis)
         if (upper >> axis & 1) {
-          std::array<std::int64_t, D> end; // of an edge of the first cell
+          Index end; // of an edge of the first cell
           for (int a = 0; a < D; ++a) end[a] = upper >> a & 1;
-          const unsigned slot = CellEdges<D, Method::hull>::slot(upper & ~(1u << axis), upper);
+          const unsigned lower = upper & ~(1u << axis), slot = CellEdges<D, Method::hull>::slot(lower, upper);
+          slot_[lower][static_cast<std::size_t>(axis)] = static_cast<std::uint8_t>(slot);
+          corners_[slot] = {static_cast<std::uint8_t>(lower), static_cast<std::uint8_t>(upper)};
           edge_offset_[slot] = grid_edge<D>(dims_, end, 1u << axis);
         }
   }
@@ -30,22 +36,22 @@ class SignedCells {
   // Calls use(cell, slot) for the cells around a grid edge, ascending, with the slot of the edge in each.
   template <class Use>
   void for_each_cell_around(GridEdge edge, Use&& use) const {
-    const auto ends = grid_edge_ends<D>(dims_, edge);
-    for (unsigned around = 0; around < 1u << (D - 1); ++around) { // bit clear: the cell before the edge
-      std::int64_t cell = 0;
-      unsigned lower = ends.lower[D - 1] != 0 ? 1u << (D - 1) : 0; // corner of the cell
-      bool exists = true;
-      for (int axis = D - 2; axis >= 0; --axis) {
-        const bool along = ends.direction >> axis & 1, after = around >> axis & 1;
-        const std::int64_t index = along ? ends.lower[axis] : ends.lower[axis] - !after;
-        exists &= !(along && after) && index >= 0 && index + 1 < dims_[axis];
-        lower |= static_cast<unsigned>(ends.lower[axis] != index) << axis;
-        cell = cell * dims_[axis] + index;
-      }
-      if (exists)
-        use(static_cast<std::uint64_t>(cell),
-            CellEdges<D, Method::hull>::slot(lower, lower | ends.direction));
+    const Ends ends = ends_of(edge);
+    for_each_cell_with(ends.lower, ends.upper,
+                       [&](std::uint64_t cell, const Index& index) { use(cell, slot(ends, index)); });
+  }
+  // The same for two grid edges of one cell: use(cell, slot, slot of the other).
+  template <class Use>
+  void for_each_cell_around(GridEdge edge, GridEdge other_edge, Use&& use) const {
+    const Ends ends = ends_of(edge), other = ends_of(other_edge);
+    Index lower, upper;
+    for (int axis = 0; axis < D; ++axis) {
+      lower[axis] = std::min(ends.lower[axis], other.lower[axis]);
+      upper[axis] = std::max(ends.upper[axis], other.upper[axis]);
     }
+    for_each_cell_with(lower, upper, [&](std::uint64_t cell, const Index& index) {
+      use(cell, slot(ends, index), slot(other, index));
+    });
   }
 
   // The code of a cell in the table.
@@ -55,28 +61,45 @@ class SignedCells {
     return std::span(table_.corners).subspan(table_.first[code], table_.first[code + 1] - table_.first[code]);
   }
   GridEdge edge(std::uint64_t cell, unsigned slot) const { return edge_of_origin(cell) + edge_offset_[slot]; }
-  // What the edges at the slots of a cell have in common.
-  GridEdge edge_of_origin(std::uint64_t cell) const {
-    const auto row_length = static_cast<std::uint64_t>(dims_[0]);
-    return (cell / row_length << D) * row_length + cell % row_length;
-  }
-  GridEdge edge_offset(unsigned slot) const { return edge_offset_[slot]; }
+  // The edges at the slots of a cell.
+  class Edges {
+   public:
+    Edges(const SignedCells& cells, std::uint64_t cell) : cells_(cells), origin_(cells.edge_of_origin(cell)) {
+      for (int axis = 0; axis < D - 1; ++axis) {
+        const auto length = static_cast<std::uint64_t>(cells.dims_[axis]);
+        index_[axis] = static_cast<std::int64_t>(cell % length);
+        cell /= length;
+      }
+    }
+    GridEdge operator[](unsigned slot) const { return origin_ + cells_.edge_offset_[slot]; }
+    Ends ends(unsigned slot) const {
+      const auto [lower, upper] = cells_.corners_[slot];
+      Ends ends;
+      for (int axis = 0; axis < D; ++axis) {
+        ends.lower[axis] = index_[axis] + (lower >> axis & 1);
+        ends.upper[axis] = index_[axis] + (upper >> axis & 1);
+      }
+      ends.direction = lower ^ upper;
+      return ends;
+    }
 
-  // Whether the surface crosses the edge.
-  bool crosses(GridEdge edge) const {
-    const auto ends = grid_edge_ends<D>(dims_, edge);
-    return inside(ends.lower) != inside(ends.upper);
-  }
+   private:
+    const SignedCells& cells_;
+    GridEdge origin_;
+    std::array<std::int64_t, D> index_{};
+  };
+  Ends ends_of(GridEdge edge) const { return grid_edge_ends<D>(dims_, edge); }
+
+  // Whether the surface crosses an edge.
+  bool crosses(const Ends& ends) const { return inside(ends.lower) != inside(ends.upper); }
   // Of a crossing, from 0 to 1.
-  double time(GridEdge edge) const {
-    const auto ends = grid_edge_ends<D>(dims_, edge);
+  double time(const Ends& ends) const {
     if (ends.lower[D - 1] == ends.upper[D - 1]) return static_cast<double>(ends.lower[D - 1]);
     return time_between(ends.lower);
   }
 
-  // The walls of the domain's space that the edge lies on: bit 2 axis for the first, 2 axis + 1 for the last.
-  std::uint8_t walls(GridEdge edge) const {
-    const auto ends = grid_edge_ends<D>(dims_, edge);
+  // The walls of the domain's space that an edge lies on: bit 2 axis for the first, 2 axis + 1 for the last.
+  std::uint8_t walls(const Ends& ends) const {
     unsigned walls = 0;
     for (int axis = 0; axis < D - 1; ++axis)
       walls |= ((ends.upper[axis] == 0 ? 1u : 0u) | (ends.lower[axis] == dims_[axis] - 1 ? 2u : 0u))
@@ -84,11 +107,9 @@ class SignedCells {
     return static_cast<std::uint8_t>(walls);
   }
 
-  // Of the slice at a moment (landmarks.hpp), if they are known; and how many parts of a slice are searched
-  // in the time that it takes to find them.
-  virtual std::unique_ptr<Landmarks<D>> landmarks(double /*moment*/, Direction, bool /*of_rim*/) const {
-    return nullptr;
-  }
+  // Of its slices, or of the curves where they end (landmarks.hpp), if they are known; and how many parts of
+  // slices are searched in the time that it takes to find them.
+  virtual std::unique_ptr<Landmarks<D>> landmarks(bool /*of_rim*/) const { return nullptr; }
   virtual std::size_t cost_of_landmarks() const { return SIZE_MAX; }
 
   // Calls use(cell) for all cells that the surface may pass, ascending.
@@ -114,9 +135,44 @@ class SignedCells {
   virtual double time_between(const std::array<std::int64_t, D>& lower) const = 0;
 
  private:
+  unsigned slot(const Ends& ends, const Index& cell) const {
+    unsigned lower = 0; // corner of the cell
+    for (int axis = 0; axis < D; ++axis)
+      lower |= static_cast<unsigned>(ends.lower[axis] != cell[axis]) << axis;
+    return slot_[lower][static_cast<std::size_t>(std::countr_zero(ends.direction))];
+  }
+
+  // What the edges at the slots of a cell have in common.
+  GridEdge edge_of_origin(std::uint64_t cell) const {
+    const auto row_length = static_cast<std::uint64_t>(dims_[0]);
+    return (cell / row_length << D) * row_length + cell % row_length;
+  }
+
+  // Calls use(cell, index of its lowest sample) for the cells of which the samples between two are corners,
+  // ascending.
+  template <class Use>
+  void for_each_cell_with(const Index& lower, const Index& upper, Use&& use) const {
+    for (unsigned place = 0; place < 1u << (D - 1); ++place) { // bit clear: the cell ends there
+      Index index{};
+      std::int64_t cell = 0;
+      bool exists = true;
+      for (int axis = D - 2; axis >= 0; --axis) {
+        const bool begins = place >> axis & 1;
+        index[axis] = begins ? lower[axis] : upper[axis] - 1;
+        exists &=
+            !(begins && lower[axis] != upper[axis]) && index[axis] >= 0 && index[axis] + 1 < dims_[axis];
+        cell = cell * dims_[axis] + index[axis];
+      }
+      if (exists) use(static_cast<std::uint64_t>(cell), index);
+    }
+  }
+
   const MarchTable<D>& table_;
   std::array<std::int64_t, D> dims_;
-  std::array<GridEdge, CellEdges<D, Method::hull>::slots> edge_offset_{};
+  static constexpr unsigned slots = CellEdges<D, Method::hull>::slots;
+  std::array<std::array<std::uint8_t, D>, 1u << D> slot_{}; // of an edge, by its lower corner and axis
+  std::array<CellEdge, slots> corners_{};                   // of each slot
+  std::array<GridEdge, slots> edge_offset_{};
 };
 
 // By the masks of whole steps.
@@ -124,8 +180,8 @@ template <int D>
 class MaskedCells final : public SignedCells<D> {
  public:
   // `table`: of the method.
-  MaskedCells(const MarchTable<D>& table, Method method, Crossings<D> crossings)
-      : SignedCells<D>(table, crossings.dims()), method_(method), crossings_(std::move(crossings)) {
+  MaskedCells(const MarchTable<D>& table, Crossings<D> crossings)
+      : SignedCells<D>(table, crossings.dims()), crossings_(std::move(crossings)) {
     for (unsigned place = 0; place < row_offset_.size(); ++place)
       for (int axis = D - 2; axis > 0; --axis)
         row_offset_[place] =
@@ -144,8 +200,8 @@ class MaskedCells final : public SignedCells<D> {
     return code;
   }
 
-  std::unique_ptr<Landmarks<D>> landmarks(double moment, Direction direction, bool of_rim) const override {
-    return std::make_unique<Landmarks<D>>(crossings_, method_, moment, direction, of_rim);
+  std::unique_ptr<Landmarks<D>> landmarks(bool of_rim) const override {
+    return std::make_unique<Landmarks<D>>(crossings_, of_rim);
   }
   std::size_t cost_of_landmarks() const override { return crossings_.rows() / 8; }
 
@@ -163,7 +219,6 @@ class MaskedCells final : public SignedCells<D> {
     return crossings_.time_at(row_in_step(lower), static_cast<std::size_t>(lower[0]));
   }
 
-  Method method_;
   Crossings<D> crossings_;
   std::array<std::size_t, 1u << (D - 2)> row_offset_{}; // of the rows of a cell, by their place in a column
 };

@@ -95,7 +95,11 @@ class Slab {
   // The vertex on an edge, if M has one there.
   std::optional<Vertex> find(GridEdge edge) {
     if constexpr (C <= 4)
-      if (cells_) return cells_->crosses(edge) ? std::optional(vertex_on(edge)) : std::nullopt;
+      if (cells_) {
+        const auto ends = cells_->ends_of(edge);
+        if (!cells_->crosses(ends)) return std::nullopt;
+        return vertex_on(edge, [&] { return ends; });
+      }
     const auto place_of_edge = std::ranges::lower_bound(edges_, edge);
     if (place_of_edge == edges_.end() || *place_of_edge != edge) return std::nullopt;
     return static_cast<Vertex>(place_of_edge - edges_.begin());
@@ -129,6 +133,20 @@ class Slab {
     return unfolded_stars_[vertex];
   }
 
+  // Calls use(simplex) for the simplices around an edge of M.
+  template <class Use>
+  void for_each_around(Vertex a, Vertex b, Use&& use) {
+    if constexpr (C <= 4)
+      if (cells_) {
+        const auto around = [&](std::uint64_t cell, unsigned slot, unsigned other) {
+          for_each_simplex_with(std::uint32_t{1} << slot | std::uint32_t{1} << other, cell, use);
+        };
+        return cells_->for_each_cell_around(edges_[a], edges_[b], around);
+      }
+    for (const SimplexNumber number : stars_.of(a))
+      if (has_corner(number, b)) use(number);
+  }
+
   // Whether a triangle of M is one where M ends: at a wall of the domain, or where samples are missing.
   bool is_on_boundary(const std::array<Vertex, 3>& triangle) {
     if (cells_) return walls_[triangle[0]] & walls_[triangle[1]] & walls_[triangle[2]];
@@ -137,18 +155,18 @@ class Slab {
            }) == 1;
   }
 
-  // Of a slice (landmarks.hpp), if the slab unfolds; and how many parts of a slice are searched in the time
-  // that it takes to find them.
-  std::unique_ptr<Landmarks<C>> landmarks(double moment, Direction direction, bool of_rim) const {
-    if constexpr (C <= 4)
-      if (cells_) return cells_->landmarks(moment, direction, of_rim);
+  // Of slices, or of the curves where they end (landmarks.hpp): if the slab unfolds, and once so many of
+  // their parts were searched that it takes less time to find them.
+  const Landmarks<C>* landmarks(bool of_rim) {
+    if constexpr (C <= 4) {
+      auto& landmarks = landmarks_[of_rim];
+      if (cells_ && !landmarks && searched_[of_rim] > cells_->cost_of_landmarks())
+        landmarks = cells_->landmarks(of_rim);
+      return landmarks.get();
+    }
     return nullptr;
   }
-  std::size_t cost_of_landmarks() const {
-    if constexpr (C <= 4)
-      if (cells_) return cells_->cost_of_landmarks();
-    return SIZE_MAX;
-  }
+  void add_searched(std::size_t parts, bool of_rim) { searched_[of_rim] += parts; }
 
   // By cell, and in the order of its table within one.
   bool comes_before(SimplexNumber a, SimplexNumber b) const {
@@ -162,52 +180,52 @@ class Slab {
   }
 
  private:
-  Vertex vertex_on(GridEdge edge) {
+  // `ends()`: of the edge.
+  template <class Ends>
+  Vertex vertex_on(GridEdge edge, Ends&& ends) {
     const auto [number, is_new] = vertex_on_edge_.insert(edge, static_cast<std::uint32_t>(edges_.size()));
     if (is_new) {
       edges_.push_back(edge);
-      times_.push_back(cells_->time(edge));
-      walls_.push_back(cells_->walls(edge));
+      times_.push_back(cells_->time(ends()));
+      walls_.push_back(cells_->walls(ends()));
     }
     return number;
   }
   struct UnfoldedCell {
-    SimplexNumber first; // of its simplices
-    std::uint32_t code;
+    SimplexNumber first, end; // of its simplices
   };
   UnfoldedCell unfold(std::uint64_t cell) {
     const auto [number, is_new] =
         number_of_cell_.insert(cell, static_cast<std::uint32_t>(unfolded_cells_.size()));
     if (is_new) {
-      unfolded_cells_.push_back({static_cast<SimplexNumber>(simplex_count()), cells_->code_of(cell)});
-      const auto slots = cells_->simplices(unfolded_cells_.back().code);
-      cell_of_.resize(cell_of_.size() + slots.size() / C, cell);
-      const std::size_t first_corner = corners_.size();
-      corners_.resize(first_corner + slots.size());
-      const GridEdge origin = cells_->edge_of_origin(cell);
-      constexpr unsigned most_slots = CellEdges<C, Method::hull>::slots;
-      static_assert(most_slots <= 32);
-      std::array<Vertex, most_slots> vertex; // of each slot
-      std::uint32_t known = 0;
-      for (std::size_t i = 0; i < slots.size(); ++i) {
-        const unsigned slot = slots[i];
-        if (!(known >> slot & 1))
-          vertex[slot] = vertex_on(origin + cells_->edge_offset(slot)), known |= std::uint32_t{1} << slot;
-        corners_[first_corner + i] = vertex[slot];
+      const auto first = static_cast<SimplexNumber>(simplex_count());
+      const typename Cells::Edges edges(*cells_, cell);
+      std::array<Vertex, CellEdges<C, Method::hull>::slots> vertex; // of each slot
+      std::uint32_t known = 0, in_simplex = 0;                      // slots
+      for (const unsigned slot : cells_->simplices(cells_->code_of(cell))) {
+        const std::uint32_t bit = std::uint32_t{1} << slot;
+        if (!(known & bit)) vertex[slot] = vertex_on(edges[slot], [&] { return edges.ends(slot); });
+        known |= bit;
+        corners_.push_back(vertex[slot]);
+        in_simplex |= bit;
+        if (corners_.size() % C == 0) slots_.push_back(std::exchange(in_simplex, 0));
       }
+      cell_of_.resize(simplex_count(), cell);
+      unfolded_cells_.push_back({first, static_cast<SimplexNumber>(simplex_count())});
     }
     return unfolded_cells_[number];
+  }
+  // Calls use(simplex) for those of a cell with corners at all of some slots.
+  template <class Use>
+  void for_each_simplex_with(std::uint32_t slots, std::uint64_t cell, Use&& use) {
+    const auto [first, end] = unfold(cell);
+    for (SimplexNumber number = first; number < end; ++number)
+      if ((slots_[number] & slots) == slots) use(number);
   }
   void unfold_star(Vertex vertex) {
     found_.clear();
     cells_->for_each_cell_around(edges_[vertex], [&](std::uint64_t cell, unsigned slot) {
-      const UnfoldedCell unfolded = unfold(cell);
-      const auto slots = cells_->simplices(unfolded.code);
-      for (std::size_t first = 0; first < slots.size(); first += C) {
-        bool has_slot = false;
-        for (std::size_t i = 0; i < C; ++i) has_slot |= slots[first + i] == slot;
-        if (has_slot) found_.push_back(unfolded.first + static_cast<SimplexNumber>(first / C));
-      }
+      for_each_simplex_with(std::uint32_t{1} << slot, cell, [&](auto number) { found_.push_back(number); });
     });
     if (unfolded_stars_.size() < edges_.size()) unfolded_stars_.resize(edges_.size());
     unfolded_stars_[vertex] = found_; // stays where it is when others come
@@ -219,9 +237,12 @@ class Slab {
   Stars stars_;
 
   std::unique_ptr<Cells> cells_;
+  std::array<std::unique_ptr<Landmarks<C>>, 2> landmarks_; // of slices, of the curves where they end
+  std::array<std::size_t, 2> searched_{};                  // parts of these
   NumberMap vertex_on_edge_, number_of_cell_;
   std::vector<UnfoldedCell> unfolded_cells_;
   std::vector<std::uint8_t> walls_;                        // of each vertex
+  std::vector<std::uint32_t> slots_;                       // of the corners of each simplex, as bits
   std::vector<std::uint64_t> cell_of_;                     // each simplex
   std::vector<std::vector<SimplexNumber>> unfolded_stars_; // empty where not asked for
   std::vector<SimplexNumber> found_;                       // of the star that is unfolded

@@ -43,8 +43,7 @@ struct PartsOfSlice : Slice<C> {
   // Calls use(part) for the parts around an edge that crosses the slice.
   template <class Use>
   void for_each_around(Vertex before, Vertex after, Use&& use) const {
-    for (const SimplexNumber simplex : this->slab.star(before))
-      if (this->slab.has_corner(simplex, after)) use(simplex);
+    this->slab.for_each_around(before, after, use);
   }
 };
 
@@ -59,14 +58,13 @@ struct PartsOfRims : Slice<4> {
   }
   template <class Use>
   void for_each_around(Vertex before, Vertex after, Use&& use) const {
-    for (const SimplexNumber simplex : slab.star(before)) {
-      if (!slab.has_corner(simplex, after)) continue;
+    slab.for_each_around(before, after, [&](SimplexNumber simplex) {
       const auto corners = slab.simplex(simplex);
       for (std::uint32_t left_out = 0; left_out < 4; ++left_out)
         if (corners[left_out] != before && corners[left_out] != after)
           if (const std::uint32_t part = 4 * simplex + left_out; slab.is_on_boundary(triangle(part)))
             use(part);
-    }
+    });
   }
   // Calls use(part) for those of a simplex.
   template <class Use>
@@ -88,9 +86,9 @@ struct PartsOfRims : Slice<4> {
   }
 };
 
-// Which of several places in a slice are connected within it. All searches advance in turn, and the last
-// that is neither exhausted nor met is left unfinished: the cost is that of the smaller pieces. In a search
-// that takes long, those that come to landmarks of one name have as good as met.
+// Which of several places in a slice are connected within it. All searches advance in turn, those that have
+// met as one, and the last that is not exhausted is left unfinished: the cost is that of the smaller pieces.
+// Once landmarks are known, those that come to some of one name have as good as met.
 class PieceSearch {
  public:
   struct Piece {
@@ -107,9 +105,7 @@ class PieceSearch {
     std::vector<std::vector<std::uint32_t>> found(seeds.size());
     std::vector<std::size_t> next(seeds.size(), 0); // what of `found` has been expanded
     NumberMap edges;                                // whose parts are claimed: each is gone round once
-    decltype(parts.slab.landmarks(0, {}, false)) landmarks;
     NumberMap seed_at_landmark;
-    std::size_t parts_passed = 0;
     for (std::size_t seed = 0; seed < seeds.size(); ++seed)
       for (const std::uint32_t part : seeds[seed]) claim(part, seed, groups, found);
 
@@ -120,21 +116,24 @@ class PieceSearch {
       return open;
     };
     std::set<std::uint64_t> open = unfinished();
-    while (open.size() > 1) {
-      for (std::size_t seed = 0; seed < seeds.size(); ++seed)
-        for (int turns = 0; turns < 16 && next[seed] < found[seed].size(); ++turns)
+    std::vector<int> turns(seeds.size()); // of each group, in a round
+    for (std::size_t round = 0; open.size() > 1; ++round) {
+      const auto* const landmarks = parts.slab.landmarks(Parts::of_rim);
+      turns.assign(seeds.size(), 16);
+      for (std::size_t i = 0; i < seeds.size(); ++i) {
+        const std::size_t seed = (i + round) % seeds.size();
+        while (next[seed] < found[seed].size() && turns[groups.find(seed)]-- > 0)
           parts.for_each_edge(found[seed][next[seed]++], [&](Vertex before, Vertex after) {
             if (!edges.insert(std::uint64_t{before} << 32 | after, 0).second) return;
-            if (landmarks)
-              if (const auto name = landmarks->name(parts.slab.edge(before), parts.slab.edge(after)))
+            if (landmarks && parts.slab.edge(after) == parts.slab.edge(before) + parts.slab.step_offset)
+              if (const auto name = landmarks->name(parts.slab.edge(before)))
                 groups.unite(seed_at_landmark.insert(*name, static_cast<std::uint32_t>(seed)).first, seed);
             parts.for_each_around(before, after,
                                   [&](std::uint32_t other) { claim(other, seed, groups, found); });
           });
+      }
+      parts.slab.add_searched(16 * open.size(), Parts::of_rim); // or fewer
       open = unfinished();
-      parts_passed += 16 * seeds.size(); // or fewer
-      if (!landmarks && parts_passed > parts.slab.cost_of_landmarks())
-        landmarks = parts.slab.landmarks(parts.moment, parts.direction, Parts::of_rim);
     }
 
     std::map<std::uint64_t, Piece> pieces;
@@ -164,19 +163,5 @@ class PieceSearch {
   std::vector<Owner> owner_; // of each part
   std::uint32_t search_ = 0;
 };
-
-// The number of boundary curves of a slice that pass a triangle of one of the simplices, all of which meet
-// it, with a corner that `is_wanted`.
-template <class IsWanted>
-std::int64_t count_rims(const Slice<4>& slice, std::span<const SimplexNumber> simplices,
-                        IsWanted&& is_wanted) {
-  const PartsOfRims rims{slice};
-  std::vector<std::vector<std::uint32_t>> seeds;
-  for (const SimplexNumber simplex : simplices)
-    rims.for_each_part(simplex, [&](std::uint32_t part) {
-      if (std::ranges::any_of(rims.triangle(part), is_wanted)) seeds.push_back({part});
-    });
-  return seeds.empty() ? 0 : std::ssize(PieceSearch().find(rims, seeds));
-}
 
 } // namespace hyperiso::track_detail

@@ -79,7 +79,7 @@ class SurfaceSteps {
         [&] { add_regions(samples, upper); });
     if (!surface) return surface.error();
     if (crossings) {
-      Slab<D> part(std::make_unique<MaskedCells<D>>(*table_, options_.method, std::move(*crossings)));
+      Slab<D> part(std::make_unique<MaskedCells<D>>(*table_, std::move(*crossings)));
       describe(part, slab);
       return Advance{std::move(upper), std::make_unique<Sweep<D>>(std::move(part), lower_time, upper_time,
                                                                   lower.pieces(), std::move(candidates))};

@@ -80,6 +80,20 @@ class Sweep {
   // At the upper step.
   std::uint64_t strand_below(Vertex vertex) { return strand_of(simplex_before(vertex), slab.time(vertex)); }
 
+  // The number of boundary curves of the slice just before or just after a moment that pass a triangle of one
+  // of the simplices, all of which meet it, with a corner that `is_wanted`.
+  template <class IsWanted>
+  std::int64_t count_rims(std::span<const SimplexNumber> simplices, double moment, Direction direction,
+                          IsWanted&& is_wanted) requires(C == 4) {
+    const PartsOfRims rims{{slab, moment, direction}};
+    std::vector<std::vector<std::uint32_t>> seeds;
+    for (const SimplexNumber simplex : simplices)
+      rims.for_each_part(simplex, [&](std::uint32_t part) {
+        if (std::ranges::any_of(rims.triangle(part), is_wanted)) seeds.push_back({part});
+      });
+    return seeds.empty() ? 0 : std::ssize(rim_search_.find(rims, seeds));
+  }
+
   // Goes through the inside of the slab. Requires an arc for each strand at the lower step.
   void run(GraphBuilder& graph) {
     std::vector<Vertex> vertices = inner_vertices();
@@ -312,8 +326,8 @@ class Sweep {
           after.insert(after.end(), component.begin(), component.end());
       }
       const auto any = [](Vertex) { return true; };
-      return count_rims({slab, moment, Direction::after}, after, any) -
-             count_rims({slab, moment, Direction::before}, before, any);
+      return count_rims(after, moment, Direction::after, any) -
+             count_rims(before, moment, Direction::before, any);
     } else {
       return 0;
     }
@@ -330,7 +344,7 @@ class Sweep {
   std::map<std::pair<Vertex, SimplexNumber>, std::uint64_t> parted_; // at the lower step
   std::map<std::uint64_t, std::int64_t> arcs_;
   SideFinder<C> sides_;
-  PieceSearch search_;
+  PieceSearch search_, rim_search_;
   LinkTest<C> link_;
 };
 

@@ -23,7 +23,7 @@
 //     side.hpp          the slices just before and after a cluster of vertices with one time: their pieces,
 //                       their Euler characteristic
 //     slice_search.hpp  whether several places of a slice are connected, and how many boundary curves pass
-//                       some; landmarks.hpp ends searches that take long
+//                       some; landmarks.hpp ends them early
 //   graph_builder.hpp collects events and arcs
 //   step_features.hpp measures the components at the step, on regions of samples (regions.hpp)
 //   region_features.hpp measures those of a region, on its mesh
