@@ -126,7 +126,7 @@ Status extract_into(const FieldView<const T, D>& field, double isovalue, const E
                     SimplexMesh<D>& mesh);
 
 /// The surfaces at several isovalues, in their order. The field is read whole once, and once more where the
-/// surfaces are. `memory_limit` is for all of them.
+/// surfaces are. `memory_limit` is for all of them. Errors: the same.
 template <class T, int D>
 Result<std::vector<SimplexMesh<D>>> extract(const FieldView<const T, D>& field,
                                             std::span<const double> isovalues,

@@ -228,7 +228,7 @@ struct SeriesEntry {
   double time;
   std::filesystem::path file; ///< relative to the series file
 };
-/// Writes a ParaView .pvd that names the files and their times.
+/// Writes a ParaView .pvd that names the files and their times. Errors: file_unwritable, out_of_memory.
 Status write_series(const std::vector<SeriesEntry>& entries, const std::filesystem::path& path,
                     FileGroup* group = nullptr);
 

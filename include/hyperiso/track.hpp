@@ -177,8 +177,10 @@ struct TrackOptions {
 /// component changes its Euler characteristic. It costs more, as the inside is filled with simplices.
 ///
 /// An axis of space with one sample has no cells, so there is nothing: leave it out of the field, as the
-/// program does. The graph does not depend on the number of threads. Errors: those of `extract` and of the
-/// source; invalid_argument for fewer than two steps or a time axis that does not increase.
+/// program does. The graph does not depend on the number of threads.
+/// Cost: about three times that of `stream` where a percent or two of the cells are active; many times that
+/// where events are many or samples equal the isovalue (docs/performance.md). Errors: those of `extract` and
+/// of the source; invalid_argument for fewer than two steps or a time axis that does not increase.
 Result<TrackingGraph> track(StepSource& source, double isovalue, const TrackOptions& options = {});
 
 /// The history of a few components, and what it took.
@@ -214,9 +216,9 @@ std::int64_t simplify(TrackingGraph& graph, double minimum_volume, double minimu
 Mesh graph_mesh(const TrackingGraph& graph);
 
 /// The surface at a step, or the region as a mesh of triangles or tetrahedra, with the tracks of its pieces:
-/// simplex data `track_id` and `family_id`, -1 where M
-/// has none. `step` is that step alone, as `source.read(k, k + 1)` gives it.
-/// Requires that `graph` came from the same field with the same options and with features measured.
+/// simplex data `track_id` and `family_id`, -1 where no track passes (beside missing samples). `step` is that
+/// step alone, as `source.read(number, number + 1)` gives it. Requires that `graph` came from the same field
+/// with the same options and with features measured. Errors: those of `extract`.
 Result<Mesh> tracked_surface(const TrackingGraph& graph, const Field& step, std::int64_t number,
                              const TrackOptions& options = {});
 
