@@ -54,17 +54,7 @@ class RegionSlabSamples {
   }
 
   Place place_at(const Location& at) const {
-    Place place;
-    const auto& grid = vertices_.field().grid;
-    for (int axis = 0; axis < D - 1; ++axis) {
-      const bool at_lower = at.weight == 0 || at.lower[axis] == at.upper[axis];
-      const bool at_upper = at.weight == 1 || at.lower[axis] == at.upper[axis];
-      const double lower = grid.axes[axis].coordinate(at.lower[axis]);
-      const double upper = grid.axes[axis].coordinate(at.upper[axis]);
-      place.position.push_back(at_lower ? lower : at_upper ? upper : lower + at.weight * (upper - lower));
-      place.on_wall |= (at_lower && at.lower[axis] == 0) || (at_upper && at.upper[axis] == dims_[axis] - 1);
-    }
-    return place;
+    return place_between<D>(vertices_.field().grid, at.lower, at.upper, at.weight);
   }
 
   RegionVertices<T, D> vertices_;

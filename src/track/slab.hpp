@@ -43,6 +43,21 @@ struct Place {
   bool on_wall = false;
 };
 
+// So much of the way from one sample to another; to the bit where they are, at either.
+template <int D>
+Place place_between(const Grid<D>& grid, const std::array<std::int64_t, D>& from,
+                    const std::array<std::int64_t, D>& to, double weight) {
+  Place place;
+  for (int axis = 0; axis < D - 1; ++axis) {
+    const bool at_first = from[axis] == to[axis] || weight == 0;
+    const bool at_last = from[axis] == to[axis] || weight == 1;
+    const double first = grid.axes[axis].coordinate(from[axis]), last = grid.axes[axis].coordinate(to[axis]);
+    place.position.push_back(at_first ? first : at_last ? last : first + weight * (last - first));
+    place.on_wall |= (at_first && from[axis] == 0) || (at_last && to[axis] == grid.axes[axis].count - 1);
+  }
+  return place;
+}
+
 // C corners a simplex. Times run from 0 at the lower step to 1 at the upper one: they are the weights of
 // crossings, so equal fractions of samples give equal times, and only what lies on a step has 0 or 1.
 //
@@ -270,27 +285,17 @@ class SlabSamples {
 
   Place place(GridEdge edge) const {
     const auto ends = grid_edge_ends<D>(dims_, edge);
-    return place_between(ends, weight(ends));
+    return place_of(ends, weight(ends));
   }
   // Where the edge ends: the place of a crossing at its upper sample.
-  Place place_of_upper_end(GridEdge edge) const { return place_between(grid_edge_ends<D>(dims_, edge), 1); }
+  Place place_of_upper_end(GridEdge edge) const { return place_of(grid_edge_ends<D>(dims_, edge), 1); }
 
   const FieldView<const T, D>& field() const { return field_; }
   GridEdge row_length() const { return static_cast<GridEdge>(dims_[0]); }
 
  private:
-  Place place_between(const GridEdgeEnds<D>& ends, double weight) const {
-    Place place;
-    for (int axis = 0; axis < D - 1; ++axis) {
-      const bool along = ends.direction >> axis & 1;
-      const bool at_lower = !along || weight == 0, at_upper = !along || weight == 1;
-      const double lower = field_.grid.axes[axis].coordinate(ends.lower[axis]);
-      const double upper = field_.grid.axes[axis].coordinate(ends.upper[axis]);
-      place.position.push_back(at_lower ? lower : at_upper ? upper : lower + weight * (upper - lower));
-      place.on_wall |=
-          (at_lower && ends.lower[axis] == 0) || (at_upper && ends.upper[axis] == dims_[axis] - 1);
-    }
-    return place;
+  Place place_of(const GridEdgeEnds<D>& ends, double weight) const {
+    return place_between<D>(field_.grid, ends.lower, ends.upper, weight);
   }
 
   FieldView<const T, D> field_;
