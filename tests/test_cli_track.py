@@ -52,6 +52,16 @@ class Tracking(Case):
         self.assert_refused(1, "track", path, "--iso", "0.5", *memory, "-o", "tracks", words=["8 MiB", "--memory"])
         self.assertEqual(self.files(), ["field.nrrd"])
 
+    # Of noise the pictures would take hundreds of megabytes.
+    def test_pictures_show_the_largest_of_many(self):
+        path = self.sample("noise", "64,64,24")
+        count = len(self.ok("track", path, "--iso", "0.8", "-o", "tracks", "--json").json()["tracks"])
+        self.assertGreater(count, 2000)
+        graph = (self.folder / "tracks/graph.svg").read_text()
+        self.assertEqual(graph.count("<title>track "), 2000)
+        self.assertIn(f"2000 tracks, isovalue 0.8 ({count - 2000} more simplified or smaller)", graph)
+        self.assertLessEqual((self.folder / "tracks/volume.svg").read_text().count("<title>track "), 2000)
+
     def test_fields_of_too_many_or_too_few_axes(self):
         path = self.sample("ball", "6,6,6,5,4")
         self.assert_refused(2, "track", path, "--iso", "0.5", words=["6 x 6 x 6 x 5 x 4", "--crop ,,,0:1"])

@@ -10,7 +10,7 @@
 namespace hyperiso {
 
 /// Writes what is known of a graph into `directory`, which is made if it does not exist. Simplified tracks
-/// stay in the tables, marked; pictures leave them out.
+/// stay in the tables, marked; pictures leave them out, and all but the 2000 largest others.
 ///
 /// | tracks.csv | a row per track: its ends, parents, children, steps, largest volume, family |
 /// | features.csv | a row per track and step: sizes, places, topology |

@@ -169,7 +169,7 @@ void fit(const View& options, std::uint64_t size, double isovalue, Field& field,
 
 void track_components(const View& options, StepSource& steps, Content& content) {
   if (!options.track) return;
-  if (!steps.info().has_time) fail_usage("--track: no axis of the field is time");
+  if (!steps.info().has_time) fail_usage("--track: no axis of the field is time; --time-axis names one");
   const TrackOptions tracking = options.tracking.track_options(options.surface, options.machine);
   content.tracking = options.tracking.track(steps, tracking, options.printing.quiet);
   if (options.folder) options.folder->check_tracks(content.tracking);

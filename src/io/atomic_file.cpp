@@ -245,20 +245,41 @@ void AtomicFile::write_through(const char* data, std::size_t bytes) {
 }
 
 // Some file systems only learn at this point that there is no room.
-void AtomicFile::close_and_sync() {
+void AtomicFile::sync() {
   if (!failed() && !temporary_.empty() && ::fsync(descriptor_) != 0 && errno != EINVAL) error_number_ = errno;
+}
+
+void AtomicFile::close() {
+  if (descriptor_ < 0) return;
   const int closed = ::close(std::exchange(descriptor_, -1));
   if (!failed() && closed != 0 && errno != EINTR) error_number_ = errno;
 }
 
 Status AtomicFile::commit(FileGroup* group) {
   flush();
-  if (descriptor_ >= 0) close_and_sync();
   buffer_ = {};
+  if (!group) sync();
+  close();
   if (!failed() && group) {
     group->files_.push_back(std::move(*this));
     return {};
   }
+  return take_place();
+}
+
+Status AtomicFile::sync_closed() {
+  if (temporary_.empty()) return {};
+  descriptor_ = open_retrying(temporary_.c_str(), O_RDONLY);
+  if (descriptor_ < 0) {
+    error_number_ = errno;
+    return error();
+  }
+  sync();
+  close();
+  return status();
+}
+
+Status AtomicFile::take_place() {
   if (!failed() && unfinished_) {
     if (::rename(temporary_.c_str(), replaces_.c_str()) == 0)
       forget_unfinished(std::exchange(unfinished_, nullptr));
@@ -347,8 +368,10 @@ std::vector<std::filesystem::path> FileGroup::files() const {
 
 Status FileGroup::commit() {
   const SignalsWait all_of_them;
+  for (AtomicFile& file : files_) // all at once: the first often takes the others along to the device
+    if (const Status synced = file.sync_closed(); !synced) return synced;
   for (AtomicFile& file : files_)
-    if (const Status placed = file.commit(); !placed) return placed;
+    if (const Status placed = file.take_place(); !placed) return placed;
   for (UnfinishedFile* folder : std::exchange(folders_, {})) forget_unfinished(folder);
   return {};
 }

@@ -52,8 +52,8 @@ class AtomicFile {
   // Is called every few hundred kilobytes, for who writes from pages that need not stay in memory.
   void set_on_flush(std::function<void()> on_flush) { on_flush_ = std::move(on_flush); }
 
-  // Flushes to the device, closes and renames; with a group, the group renames, and the
-  // file waits for that without a descriptor or a buffer. Error: file_unwritable. Call
+  // Flushes to the device, closes and renames; with a group, the group does this, and the
+  // file waits for it without a descriptor or a buffer. Error: file_unwritable. Call
   // once, last.
   Status commit(FileGroup* group = nullptr);
 
@@ -63,7 +63,11 @@ class AtomicFile {
   void open_in_place();
   void flush();
   void write_through(const char* data, std::size_t bytes);
-  void close_and_sync();
+  void sync();
+  void close();
+  friend class FileGroup;
+  Status sync_closed(); // of a file that waits in a group
+  Status take_place();
   Error error() const;
 
   std::filesystem::path target_;    // as the caller named it, for messages

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <span>
 
 namespace hyperiso::tracking_files {
 
@@ -13,6 +14,18 @@ std::string colour_of(std::int64_t track) {
   std::snprintf(digits, sizeof digits, "#%02x%02x%02x", unsigned{colour.red}, unsigned{colour.green},
                 unsigned{colour.blue});
   return digits;
+}
+
+std::optional<TrackingGraph> with_largest_alone(const TrackingGraph& graph) {
+  std::vector<std::size_t> shown;
+  for (std::size_t track = 0; track < graph.tracks.size(); ++track)
+    if (!graph.tracks[track].simplified) shown.push_back(track);
+  if (shown.size() <= most_drawn) return std::nullopt;
+  std::ranges::stable_sort(shown, std::ranges::greater{},
+                           [&](std::size_t track) { return graph.tracks[track].max_volume; });
+  TrackingGraph result = graph;
+  for (const std::size_t track : std::span(shown).subspan(most_drawn)) result.tracks[track].simplified = true;
+  return result;
 }
 
 std::vector<double> ticks(double low, double high, int wanted) {

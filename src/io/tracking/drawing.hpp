@@ -8,6 +8,12 @@ namespace hyperiso::tracking_files {
 // Round numbers between two ends, about `wanted` of them.
 std::vector<double> ticks(double low, double high, int wanted);
 
+// More tracks than anybody can tell apart are not drawn.
+constexpr std::size_t most_drawn = 2000;
+
+// The graph with all but its largest tracks marked as simplified; nothing if all of them can be drawn.
+std::optional<TrackingGraph> with_largest_alone(const TrackingGraph& graph);
+
 // A coordinate of a picture, to a hundredth.
 std::string pixel(double value);
 

@@ -71,7 +71,8 @@ class GraphPicture {
   std::string svg() {
     std::string title = text(shown_tracks(), " tracks, isovalue ", graph_.isovalue);
     if (shown_tracks() < graph_.tracks.size())
-      title += text(" (", graph_.tracks.size() - shown_tracks(), " more simplified)");
+      title += text(" (", graph_.tracks.size() - shown_tracks(), " more simplified",
+                    shown_tracks() == most_drawn ? " or smaller)" : ")");
     std::string body = time_.grid(top_margin, bottom_);
     body += weak_links();
     body += text("<g opacity=\"", shown_tracks() > many ? 0.45 : 1.0, "\">\n");
@@ -330,6 +331,9 @@ class GraphPicture {
 
 } // namespace
 
-std::string graph_svg(const TrackingGraph& graph) { return GraphPicture(graph).svg(); }
+std::string graph_svg(const TrackingGraph& graph) {
+  const auto largest = with_largest_alone(graph);
+  return GraphPicture(largest ? *largest : graph).svg();
+}
 
 } // namespace hyperiso

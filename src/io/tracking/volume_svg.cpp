@@ -119,6 +119,9 @@ class VolumePicture {
 
 } // namespace
 
-std::string volume_svg(const TrackingGraph& graph) { return VolumePicture(graph).svg(); }
+std::string volume_svg(const TrackingGraph& graph) {
+  const auto largest = with_largest_alone(graph);
+  return VolumePicture(largest ? *largest : graph).svg();
+}
 
 } // namespace hyperiso
