@@ -172,7 +172,7 @@ class Folder(Case):
         self.assertEqual(self.files(), ["field.nrrd", "old"])
 
     def test_ctrl_c_while_writing_leaves_nothing(self):
-        self.sample("gaussians", "24,24,24,200", "long.nrrd")
+        self.sample("gaussians", "10,10,10,2000", "long.nrrd")  # seconds of files
         for folder, files in (("new/tracks", ["field.nrrd", "long.nrrd"]), ("old", ["field.nrrd", "long.nrrd", "old"])):
             if folder == "old":
                 self.ok(*self.run_of, "-o", "old")
