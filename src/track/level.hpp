@@ -247,7 +247,7 @@ class Level {
     return vertices;
   }
 
-  // The strands that reach each component, ascending.
+  // The strands that reach each component, ascending: of one where nothing happens there is one.
   std::vector<std::vector<std::uint64_t>> strands_of(Sweep<C>& sweep, double time,
                                                      const std::vector<std::uint32_t>& places) {
     std::vector<std::vector<std::uint64_t>> strands(outcomes_.size());
@@ -255,14 +255,16 @@ class Level {
     for (SimplexNumber number = 0; number < sweep.slab.simplex_count(); ++number) {
       const auto [first, last] = sweep.slab.time_range(number);
       if (first == last || (time == 0 ? first : last) != time) continue;
+      const auto corners = sweep.slab.simplex(number);
+      const auto time_of = [&](Vertex vertex) { return sweep.slab.time(vertex); };
+      const Vertex at_step = time == 0 ? *std::ranges::min_element(corners, {}, time_of)
+                                       : *std::ranges::max_element(corners, {}, time_of);
+      const std::size_t component = component_[places[at_step]];
+      if (plain_[component] && !strands[component].empty()) continue;
       const std::uint64_t strand = sweep.strand_of(number, time == 0 ? last : time);
       if (seen[strand]) continue;
       seen[strand] = true;
-      for (const Vertex vertex : sweep.slab.simplex(number))
-        if (places[vertex] != none) {
-          strands[component_[places[vertex]]].push_back(strand);
-          break;
-        }
+      strands[component].push_back(strand);
     }
     for (auto& list : strands) std::ranges::sort(list);
     return strands;

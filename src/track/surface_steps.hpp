@@ -64,25 +64,22 @@ class SurfaceSteps {
     Step upper{mask_of(samples), {}, {}};
     const bool has_missing = lower.mask->has_missing() || upper.mask->has_missing();
     std::optional<Crossings<D>> crossings;
-    std::vector<GridEdge> candidates;
+    std::optional<std::vector<GridEdge>> candidates;
     Status surface;
     run_tasks(
         threads(), [&] { surface = add_surface(samples, upper); },
         [&] {
           if (!candidates_ || has_missing) return;
           crossings.emplace(slab.field(), isovalue_, lower.mask, upper.mask);
-          if (crossings->has_ties())
-            crossings.reset();
-          else
-            candidates = candidates_->find(*crossings);
+          candidates = candidates_->find(*crossings);
         },
         [&] { add_regions(samples, upper); });
     if (!surface) return surface.error();
-    if (crossings) {
+    if (crossings && !crossings->has_ties()) {
       Slab<D> part(std::make_unique<MaskedCells<D>>(*table_, std::move(*crossings)));
       describe(part, slab);
       return Advance{std::move(upper), std::make_unique<Sweep<D>>(std::move(part), lower_time, upper_time,
-                                                                  lower.pieces(), std::move(candidates))};
+                                                                  lower.pieces(), std::move(*candidates))};
     }
     ExtractOptions options = options_;
     options.precision = Precision::f32; // of positions that nobody reads
@@ -90,7 +87,8 @@ class SurfaceSteps {
     if (!mesh) return mesh.error();
     auto whole = make_slab(slab, std::move(*mesh), has_missing);
     if (!whole) return whole.error();
-    return Advance{std::move(upper), std::make_unique<Sweep<D>>(std::move(*whole), lower_time, upper_time)};
+    return Advance{std::move(upper), std::make_unique<Sweep<D>>(std::move(*whole), lower_time, upper_time,
+                                                                std::move(candidates))};
   }
 
  private:

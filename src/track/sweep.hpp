@@ -21,17 +21,18 @@ namespace hyperiso::track_detail {
 template <int C>
 class Sweep {
  public:
-  // A slab that was handed over whole.
-  Sweep(Slab<C> slab_, double lower_time, double upper_time)
+  using Candidates = std::vector<GridEdge>; // of the vertices strictly inside at which something may happen
+
+  // A slab that was handed over whole. `candidates`: if they are known.
+  Sweep(Slab<C> slab_, double lower_time, double upper_time, std::optional<Candidates> candidates = {})
       : slab(std::move(slab_)), lower_time_(lower_time), upper_time_(upper_time),
-        strands_(slab.vertex_count()) {
+        candidates_(std::move(candidates)), strands_(slab.vertex_count()) {
     if (!plain_below()) part_ways_at_lower_step();
     unite_at_lower_step();
   }
-  // One that unfolds. `pieces`: of the surface at the lower step, each a strand. `candidates`: the edges of
-  // all vertices strictly inside at which something may happen.
+  // One that unfolds. `pieces`: of the surface at the lower step, each a strand.
   Sweep(Slab<C> slab_, double lower_time, double upper_time, std::shared_ptr<const StepPieces> pieces,
-        std::vector<GridEdge> candidates)
+        Candidates candidates)
       : slab(std::move(slab_)), lower_time_(lower_time), upper_time_(upper_time), pieces_(std::move(pieces)),
         candidates_(std::move(candidates)), strands_(pieces_->count()) {}
 
@@ -122,8 +123,11 @@ class Sweep {
   // Just after the lower step, simplices belong together that share an edge from a vertex there to one above.
   // The strand of a vertex has its number; where its edges fall into several pieces, the others get new ones.
   void part_ways_at_lower_step() {
+    has_parted_.resize(slab.vertex_count());
+    const std::vector<bool> may_part = vertices_next_to_ties_below();
     for (Vertex vertex = 0; vertex < slab.vertex_count(); ++vertex) {
-      if (slab.time(vertex) != 0 || link_.is_in_one_piece_after(slab, vertex)) continue;
+      if (!may_part[vertex] || link_.is_in_one_piece_after(slab, vertex)) continue;
+      has_parted_[vertex] = true;
       const Side after = sides_.find(slab, slab.star(vertex), 0, Direction::after,
                                      [&](Vertex other) { return other == vertex; });
       for (std::size_t piece = 1; piece < after.components.size(); ++piece) {
@@ -131,6 +135,21 @@ class Sweep {
         for (const SimplexNumber simplex : after.components[piece]) parted_[{vertex, simplex}] = strand;
       }
     }
+  }
+
+  // Those at the lower step that share a simplex with one there on no edge within it; elsewhere the step has
+  // nothing of M but its own surface. With missing samples all that are at the step.
+  std::vector<bool> vertices_next_to_ties_below() const {
+    std::vector<bool> result(slab.vertex_count());
+    const auto is_at_step = [&](Vertex vertex) { return slab.time(vertex) == 0; };
+    for (SimplexNumber simplex = 0; simplex < slab.simplex_count(); ++simplex) {
+      const auto corners = slab.simplex(simplex);
+      if (slab.has_missing || std::any_of(corners.begin(), corners.end(), [&](Vertex vertex) {
+            return is_at_step(vertex) && !slab.in_step(vertex);
+          }))
+        for (const Vertex vertex : corners) result[vertex] = result[vertex] || is_at_step(vertex);
+    }
+    return result;
   }
 
   void unite_at_lower_step() {
@@ -152,7 +171,7 @@ class Sweep {
   // Of a simplex with a vertex at the lower step and one above.
   std::uint64_t strand_at_bottom(SimplexNumber simplex, Vertex vertex) const {
     if (pieces_) return pieces_->piece_at(slab.edge(vertex));
-    if (!parted_.empty())
+    if (!has_parted_.empty() && has_parted_[vertex])
       if (const auto parted = parted_.find({vertex, simplex}); parted != parted_.end()) return parted->second;
     return vertex;
   }
@@ -203,12 +222,13 @@ class Sweep {
   // Those strictly inside the slab, or the candidates among them.
   std::vector<Vertex> inner_vertices() {
     std::vector<Vertex> vertices;
-    if (pieces_) {
-      for (const GridEdge edge : candidates_) vertices.push_back(*slab.find(edge));
-    } else {
-      for (Vertex vertex = 0; vertex < slab.vertex_count(); ++vertex)
-        if (slab.time(vertex) > 0 && slab.time(vertex) < 1) vertices.push_back(vertex);
-    }
+    const auto add = [&](Vertex vertex) {
+      if (slab.time(vertex) > 0 && slab.time(vertex) < 1) vertices.push_back(vertex);
+    };
+    if (candidates_)
+      for (const GridEdge edge : *candidates_) add(*slab.find(edge));
+    else
+      for (Vertex vertex = 0; vertex < slab.vertex_count(); ++vertex) add(vertex);
     return vertices;
   }
 
@@ -335,13 +355,14 @@ class Sweep {
 
   double lower_time_, upper_time_;
   std::shared_ptr<const StepPieces> pieces_; // at the lower step, of a slab that unfolds
-  std::vector<GridEdge> candidates_;         // the same
+  std::optional<Candidates> candidates_;     // if they are known
   UnionFind strands_;
   std::unordered_map<SimplexNumber, std::vector<std::pair<double, std::uint64_t>>> labels_; // from a time on
   static constexpr std::uint32_t no_strand = UINT32_MAX;
   std::vector<std::uint32_t> below_; // strand just before each vertex, where known
   std::vector<Vertex> way_;
-  std::map<std::pair<Vertex, SimplexNumber>, std::uint64_t> parted_; // at the lower step
+  std::vector<bool> has_parted_;                                     // vertices at the lower step
+  std::map<std::pair<Vertex, SimplexNumber>, std::uint64_t> parted_; // the strands of their other pieces
   std::map<std::uint64_t, std::int64_t> arcs_;
   SideFinder<C> sides_;
   PieceSearch search_, rim_search_;
