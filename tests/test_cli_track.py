@@ -131,6 +131,11 @@ class Folder(Case):
         (other / "notes.txt").write_text("to keep")
         self.ok(*self.run_of, "-o", "tracks")
         self.assertIn("notes.txt", self.names())
+        self.ok(*self.run_of, "--steps", "0:4", "-o", "tracks")
+        (other / "surface_0008.vtp").write_text("my own") # a name that a longer run has
+        self.assert_refused(2, *self.run_of, "-o", "tracks", words=["surface_0008.vtp"])
+        self.assertEqual((other / "surface_0008.vtp").read_text(), "my own")
+        self.assertNotIn("surface_0007.vtp", self.names())
 
     # Else a series would go on into surfaces of a longer run.
     def test_what_an_earlier_run_left_is_replaced_whole(self):

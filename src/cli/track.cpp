@@ -231,9 +231,8 @@ Command track_command(CLI::App& program) {
       ->allow_extra_args(false)
       ->group("Tracks");
   app->add_option("-o,--output", options->directory,
-                  "the folder for all files; made if it does not exist. It may hold those of an earlier run, "
-                  "which are "
-                  "replaced, but nothing else")
+                  "the folder for all files; made if it does not exist. Those of an earlier run in it are "
+                  "replaced, other files beside them stay; a folder that holds only others is refused")
       ->type_name("FOLDER")
       ->group("Output");
   options->printing.add_to(*app);

@@ -217,11 +217,20 @@ std::optional<std::vector<std::string>> files_of_tracked_folder(const std::strin
 }
 
 void finish_folder(const TrackedFolder& folder, const FieldInfo& selected, FileGroup& files) {
-  const auto earlier = files_of_tracked_folder(folder.path);
-  add_source(folder, selected, files);
+  const auto earlier = files_of_tracked_folder(folder.path).value_or(std::vector<std::string>());
   const std::vector<std::string> now = names_of(files);
+  const auto is_earlier = [&](const std::string& name) {
+    return std::ranges::find(earlier, name) != earlier.end();
+  };
+  if (is_earlier("tracks.csv")) // else nothing tells what is of that run
+    for (const std::string& name : now)
+      if (const fs::path path = fs::path(folder.path) / name; !is_earlier(name) && fs::exists(path))
+        fail_usage(text("-o: ", path.string(),
+                        " is not of the run that the folder holds, and would be replaced; "
+                        "move it, or name another folder"));
+  add_source(folder, selected, files);
   take(files.commit());
-  for (const std::string& name : earlier.value_or(std::vector<std::string>()))
+  for (const std::string& name : earlier)
     if (std::error_code failure; std::ranges::find(now, name) == now.end())
       fs::remove(fs::path(folder.path) / name, failure);
 }

@@ -11,7 +11,7 @@ struct TrackingCancelled {};
 
 class GraphBuilder {
  public:
-  // `progress` hears of each event, as one slab may take long and hold much.
+  // `progress` hears of each event and of much that is looked at: one slab may take long and hold much.
   GraphBuilder(TrackingGraph& graph, const Progress& progress) : graph_(graph), progress_(progress) {}
 
   // That all is passed before `time`. Throws TrackingCancelled.

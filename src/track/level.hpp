@@ -23,8 +23,8 @@ class Level {
     } else {
       find_components();
     }
-    if (lower_) lower_vertices_ = vertices_of_special(lower_places_);
-    if (upper_) upper_vertices_ = vertices_of_special(upper_places_);
+    if (lower_) lower_vertices_ = vertices_of_special(lower_->slab, lower_places_);
+    if (upper_) upper_vertices_ = vertices_of_special(upper_->slab, upper_places_);
   }
 
   bool has_genus() const { return (upper_ ? upper_ : lower_)->slab.has_genus(); }
@@ -239,11 +239,13 @@ class Level {
     check(upper_->slab, upper_places_);
   }
 
-  std::vector<std::vector<Vertex>> vertices_of_special(const std::vector<std::uint32_t>& places) const {
+  std::vector<std::vector<Vertex>> vertices_of_special(const Slab<C>& slab,
+                                                       const std::vector<std::uint32_t>& places) const {
     std::vector<std::vector<Vertex>> vertices(outcomes_.size());
     for (Vertex vertex = 0; vertex < places.size(); ++vertex)
       if (places[vertex] != none && !plain_[component_[places[vertex]]])
         vertices[component_[places[vertex]]].push_back(vertex);
+    for (auto& list : vertices) std::ranges::sort(list, {}, [&](Vertex vertex) { return slab.edge(vertex); });
     return vertices;
   }
 

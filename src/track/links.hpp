@@ -21,6 +21,7 @@ class LinkTracer {
     for (; next_event_ < graph_.events.size(); ++next_event_) {
       const TrackingEvent& event = graph_.events[next_event_];
       const std::set<std::int64_t> rows = sources(event.arcs_in);
+      for (const std::int64_t arc : event.arcs_in) sources_.erase(arc); // it ends here
       for (const std::int64_t arc : event.arcs_out) sources_[arc] = rows;
     }
   }

@@ -98,7 +98,11 @@ class Sweep {
   // Goes through the inside of the slab. Requires an arc for each strand at the lower step.
   void run(GraphBuilder& graph) {
     std::vector<Vertex> vertices = inner_vertices();
-    std::erase_if(vertices, [&](Vertex vertex) { return link_.is_regular(slab, vertex); });
+    std::size_t looked_at = 0;
+    std::erase_if(vertices, [&](Vertex vertex) {
+      if (++looked_at % 4096 == 0) graph.tell_progress(lower_time_);
+      return link_.is_regular(slab, vertex);
+    });
     std::ranges::sort(vertices, [&](Vertex a, Vertex b) { return slab.is_earlier(a, b); });
     for (std::size_t begin = 0; begin < vertices.size();) {
       std::size_t end = begin + 1;

@@ -40,6 +40,7 @@ class TrackingRun {
       if (const Status read = window_.read(step + 1); !read) return read.error();
       auto next = target_.advance(window_.slab(), step_, time(step), time(step + 1));
       if (!next) return next.error();
+      builder_.tell_progress(time(step));
       std::unique_ptr<Sweep<C>> upper = std::move(next->between);
       if (const Status passed = pass_step(step, lower.get(), upper.get()); !passed) return passed.error();
       upper->run(builder_);
