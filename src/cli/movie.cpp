@@ -5,6 +5,7 @@
 #include "core/text.hpp"
 #include "hyperiso/glb.hpp"
 #include "hyperiso/render.hpp"
+#include "mesh/attributes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,12 +18,6 @@ namespace {
 constexpr const char* group = "Output";
 
 std::string suffix_of(const std::string& path) { return std::filesystem::path(path).extension().string(); }
-
-const Attribute* vertex_attribute(const Mesh& mesh, const std::string& name) {
-  for (const Attribute& attribute : mesh.attributes)
-    if (attribute.name == name && attribute.location == Attribute::Location::vertex) return &attribute;
-  return nullptr;
-}
 
 // Makes the coordinate along the axis of space called `name` an attribute, unless there is one of that name;
 // fails if there is neither.

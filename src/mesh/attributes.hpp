@@ -18,6 +18,13 @@ inline const Attribute* find_attribute(const Mesh& mesh, Attribute::Location loc
   return nullptr;
 }
 
+// The attribute `name` of the vertices, of however many components.
+inline const Attribute* vertex_attribute(const Mesh& mesh, std::string_view name) {
+  for (const Attribute& attribute : mesh.attributes)
+    if (attribute.name == name && attribute.location == Attribute::Location::vertex) return &attribute;
+  return nullptr;
+}
+
 // Number `place` of an attribute: that of vertex or simplex `place`, if it has one component.
 inline double value_of(const Attribute& attribute, std::size_t place) {
   return std::visit([&](const auto& values) { return static_cast<double>(values[place]); }, attribute.values);

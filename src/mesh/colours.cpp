@@ -1,6 +1,7 @@
 #include "hyperiso/colours.hpp"
 
 #include "core/text.hpp"
+#include "mesh/attributes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,12 +21,6 @@ constexpr std::array<Colour, 9> viridis_stops{{{0x44, 0x01, 0x54},
                                                {0x5e, 0xc9, 0x62},
                                                {0xad, 0xdc, 0x30},
                                                {0xfd, 0xe7, 0x25}}};
-
-const Attribute* vertex_attribute(const Mesh& mesh, const std::string& name) {
-  for (const Attribute& attribute : mesh.attributes)
-    if (attribute.name == name && attribute.location == Attribute::Location::vertex) return &attribute;
-  return nullptr;
-}
 
 std::string vertex_attributes(const Mesh& mesh) {
   std::string names;

@@ -161,12 +161,7 @@ class SampledCells final : public SignedCells<D> {
   }
   const FieldView<const T, D>& slab() const { return slab_; }
   std::uint32_t code_of(std::uint64_t cell) const override {
-    std::array<std::int64_t, D> lowest{};
-    for (int axis = 0; axis < D - 1; ++axis) {
-      lowest[axis] = static_cast<std::int64_t>(cell % static_cast<std::uint64_t>(this->dims()[axis]));
-      cell /= static_cast<std::uint64_t>(this->dims()[axis]);
-    }
-    return *code_at(&slab_.at(lowest));
+    return *code_at(&slab_.at(this->lowest_sample(cell)));
   }
 
  private:

@@ -174,7 +174,7 @@ class Level {
   // M passes straight through the step: what it has there before and after is alike, piece by piece.
   void find_uneven() {
     uneven_.assign(vertex_count_, has_missing());
-    if (!lower_ || !upper_ || has_missing()) return;
+    if (!may_pass_straight()) return;
     mark_next_to_unpaired(lower_->slab, 1.0, lower_places_);
     mark_next_to_unpaired(upper_->slab, 0.0, upper_places_);
     for (std::size_t place = 0; place < vertex_count_; ++place)
@@ -194,6 +194,9 @@ class Level {
   bool has_missing() const {
     return (lower_ && lower_->slab.has_missing) || (upper_ && upper_->slab.has_missing);
   }
+
+  // Not at the first and last step, nor beside missing samples.
+  bool may_pass_straight() const { return lower_ && upper_ && !has_missing(); }
 
   static void unite_in(const Sweep<C>& sweep, double time, const std::vector<std::uint32_t>& places,
                        UnionFind& united) {
@@ -216,7 +219,7 @@ class Level {
       if (root == place) {
         component_[place] = outcomes_.size();
         outcomes_.emplace_back();
-        plain_.push_back(lower_ && upper_ && !has_missing());
+        plain_.push_back(may_pass_straight());
       } else {
         component_[place] = component_[root];
       }
@@ -226,7 +229,7 @@ class Level {
   // The vertices that only one slab has, passed one after the other in the order of time, those of the
   // surface at the step in between: a component where nothing happens at any of them is plain.
   void find_plain() {
-    if (!lower_ || !upper_ || has_missing()) return;
+    if (!may_pass_straight()) return;
     const auto check = [&](Slab<C>& slab, const std::vector<std::uint32_t>& places) {
       LinkTest<C> link;
       for (Vertex vertex = 0; vertex < places.size(); ++vertex) {

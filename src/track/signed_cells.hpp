@@ -1,6 +1,7 @@
 #pragma once
 // The cells between two steps, and what the surface has in each, made when asked for.
 
+#include "core/cell.hpp"
 #include "extract/march_table.hpp"
 #include "track/crossings.hpp"
 #include "track/landmarks.hpp"
@@ -64,29 +65,18 @@ class SignedCells {
   // The edges at the slots of a cell.
   class Edges {
    public:
-    Edges(const SignedCells& cells, std::uint64_t cell) : cells_(cells), origin_(cells.edge_of_origin(cell)) {
-      for (int axis = 0; axis < D - 1; ++axis) {
-        const auto length = static_cast<std::uint64_t>(cells.dims_[axis]);
-        index_[axis] = static_cast<std::int64_t>(cell % length);
-        cell /= length;
-      }
-    }
+    Edges(const SignedCells& cells, std::uint64_t cell)
+        : cells_(cells), origin_(cells.edge_of_origin(cell)), lowest_(cells.lowest_sample(cell)) {}
     GridEdge operator[](unsigned slot) const { return origin_ + cells_.edge_offset_[slot]; }
     Ends ends(unsigned slot) const {
       const auto [lower, upper] = cells_.corners_[slot];
-      Ends ends;
-      for (int axis = 0; axis < D; ++axis) {
-        ends.lower[axis] = index_[axis] + (lower >> axis & 1);
-        ends.upper[axis] = index_[axis] + (upper >> axis & 1);
-      }
-      ends.direction = lower ^ upper;
-      return ends;
+      return {corner_of(lowest_, lower), corner_of(lowest_, upper), static_cast<unsigned>(lower ^ upper)};
     }
 
    private:
     const SignedCells& cells_;
     GridEdge origin_;
-    std::array<std::int64_t, D> index_{};
+    Index lowest_;
   };
   Ends ends_of(GridEdge edge) const { return grid_edge_ends<D>(dims_, edge); }
 
@@ -129,6 +119,15 @@ class SignedCells {
   }
 
  protected:
+  Index lowest_sample(std::uint64_t cell) const {
+    Index lowest{};
+    for (int axis = 0; axis < D - 1; ++axis) {
+      const auto length = static_cast<std::uint64_t>(dims_[axis]);
+      lowest[axis] = static_cast<std::int64_t>(cell % length);
+      cell /= length;
+    }
+    return lowest;
+  }
   // Whether a sample is inside; of a sample of the lower step and the one above it with different signs,
   // where the crossing lies, from 0 to 1.
   virtual bool inside(const std::array<std::int64_t, D>& sample) const = 0;

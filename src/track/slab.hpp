@@ -142,9 +142,8 @@ class Slab {
   // The simplices around a vertex, in the order of their cells.
   std::span<const SimplexNumber> star(Vertex vertex) {
     if (!cells_) return stars_.of(vertex);
-    if (unfolded_stars_.size() < edges_.size()) unfolded_stars_.resize(edges_.size());
     if constexpr (C <= 4)
-      if (unfolded_stars_[vertex].empty()) unfold_star(vertex);
+      if (vertex >= unfolded_stars_.size() || unfolded_stars_[vertex].empty()) unfold_star(vertex);
     return unfolded_stars_[vertex];
   }
 

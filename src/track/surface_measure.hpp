@@ -4,6 +4,7 @@
 #include "core/sign.hpp"
 #include "core/union_find.hpp"
 #include "hyperiso/mesh.hpp"
+#include "mesh/normals.hpp"
 #include "track/cell_counter.hpp"
 #include "track/step_mask.hpp"
 #include "track/step_pieces.hpp"
@@ -213,9 +214,7 @@ class SurfaceMeter {
     for (std::size_t corner = 0; corner < D; ++corner)
       for (std::size_t axis = 0; axis < D; ++axis) p[corner][axis] = coordinate(corners[corner], axis);
     if constexpr (D == 3) {
-      const double ax = p[1][0] - p[0][0], ay = p[1][1] - p[0][1], az = p[1][2] - p[0][2];
-      const double bx = p[2][0] - p[0][0], by = p[2][1] - p[0][1], bz = p[2][2] - p[0][2];
-      const double nx = ay * bz - az * by, ny = az * bx - ax * bz, nz = ax * by - ay * bx;
+      const auto [nx, ny, nz] = triangle_normal(p);
       sum.signed_volume += 0.5 * nx * ((p[0][0] + p[1][0] + p[2][0]) / 3);
       sum.area += 0.5 * std::sqrt(nx * nx + ny * ny + nz * nz);
     } else {

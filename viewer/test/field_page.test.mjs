@@ -21,24 +21,28 @@ describe("pages that extract", { skip: fieldPages ? false : "built without the e
   const settled = (page, isovalue) => page.waitForFunction((isovalue) => hyperiso.shownIsovalue === isovalue &&
     document.getElementById("isovalue-progress").style.visibility === "hidden", isovalue);
 
-  test("the surface, a band and the whole field give the same arrays and the same pixels", async () => {
+  /// What `look` finds in the page of the surface, of a band and of the whole field.
+  const inAllKinds = async (name, look) => {
     const found = [];
     for (const kind of ["mesh", "band", "field"]) {
-      const { page, problems, close } = await open(`exact_${kind}.html`);
-      found.push([await arrays(page), await silhouette(page)]);
+      const { page, problems, close } = await open(`${name}_${kind}.html`);
+      found.push(await look(page));
       assert.deepEqual(problems, []);
       await close();
     }
+    return found;
+  };
+
+  test("the surface, a band and the whole field give the same arrays and the same pixels", async () => {
+    const found = await inAllKinds("exact", async (page) => [await arrays(page), await silhouette(page)]);
     assert.ok(found[0][0].simplices > 10_000);
     assert.deepEqual(found[1], found[0]);
     assert.deepEqual(found[2], found[0]);
   });
 
   test("in world coordinates too, with times and places of events", async () => {
-    const found = [];
-    for (const kind of ["mesh", "band", "field"]) {
-      const { page, problems, close } = await open(`turned_${kind}.html`);
-      found.push([await arrays(page), await page.evaluate(() => hyperiso.space.axes), await page.evaluate(() => hyperiso.metadata.tracking)]);
+    const found = await inAllKinds("turned", async (page) => {
+      const seen = [await arrays(page), await page.evaluate(() => hyperiso.space.axes), await page.evaluate(() => hyperiso.metadata.tracking)];
       assert.match(await page.textContent("#position"), /^t = 7\.0+ sstep 0 of 20$/);
       await page.click('[data-event="merge"]');
       near(await position(page), 7 + 0.5 * 0.595, 0.01);
@@ -53,26 +57,21 @@ describe("pages that extract", { skip: fieldPages ? false : "built without the e
       await page.keyboard.press("Home");
       const area = await page.evaluate(() => probe.area());
       assert.ok(area > 0.1, String(area));
-      assert.deepEqual(problems, []);
-      await close();
-    }
+      return seen;
+    });
     assert.deepEqual(found[1], found[0]);
     assert.deepEqual(found[2], found[0]);
   });
 
   test("of rounded samples as well, but for rounding", async () => {
-    const found = [];
-    for (const kind of ["mesh", "band", "field"]) {
-      const { page, problems, close } = await open(`rounded_${kind}.html`);
+    const found = await inAllKinds("rounded", async (page) => {
       const { vertices, simplices, attributes } = await arrays(page);
       const pixels = await page.evaluate(() => [0, 0.333, 0.6, 1].map((time) => {
         hyperiso.moveTo(time);
         return [probe.compareMasks().gpu, probe.area()];
       }));
-      found.push({ counts: [vertices, simplices, attributes], pixels });
-      assert.deepEqual(problems, []);
-      await close();
-    }
+      return { counts: [vertices, simplices, attributes], pixels };
+    });
     for (const other of [found[1], found[2]]) {
       assert.deepEqual(other.counts, found[0].counts);
       other.pixels.flat().forEach((x, i) => near(x / found[0].pixels.flat()[i], 1, 1e-3));

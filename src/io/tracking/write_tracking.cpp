@@ -1,4 +1,3 @@
-#include "core/text.hpp"
 #include "hyperiso/track_files.hpp"
 #include "io/atomic_file.hpp"
 
@@ -45,7 +44,7 @@ Status write_tracking(const TrackingGraph& graph, const std::filesystem::path& d
     const Status written = write_mesh(graph_mesh(graph), directory / "graph.vtu", options);
     return !written || group ? written : own.commit();
   } catch (const std::bad_alloc&) {
-    return Error{Code::out_of_memory, text("no memory to write ", directory.string())};
+    return no_memory_to_write(directory);
   }
 }
 
